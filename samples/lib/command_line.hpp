@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// What all command lines have in common: bad usage and bad input give one line on the standard
+// error output and exit status 2; what the machine or driver lacks gives one line and 1.
+
+#pragma once
+
+#include "camera.hpp"
+#include "result.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+
+namespace kb
+{
+
+inline constexpr int exit_lacking = 1;
+inline constexpr int exit_bad_input = 2;
+
+/// The exit status with which the program ends now, if it does: after --help or bad usage.
+std::optional<int> parse_command_line(CLI::App &app, int argc, const char *const *argv);
+
+/// Prints "program: message" on the standard error output; returns the status.
+int fail(const CLI::App &app, const Error &error, int status);
+
+/// --size WxH, each side from 1 to 8192.
+CLI::Option *add_size_option(CLI::App &app, Size &size);
+
+/// --context osmesa|egl|glfw
+CLI::Option *add_context_option(CLI::App &app, std::string &kind);
+
+} // namespace kb

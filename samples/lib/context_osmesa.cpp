@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+
+#include "context_kinds.hpp"
+#include "shared_library.hpp"
+
+#include <GL/osmesa.h>
+
+#include <array>
+
+namespace kb
+{
+
+namespace
+{
+
+struct OsmesaFunctions {
+    decltype(&::OSMesaCreateContextExt) create = nullptr;
+    decltype(&::OSMesaDestroyContext) destroy = nullptr;
+    decltype(&::OSMesaMakeCurrent) make_current = nullptr;
+    decltype(&::OSMesaGetProcAddress) proc_address = nullptr;
+};
+
+class OsmesaContext final : public Context
+{
+public:
+    explicit OsmesaContext(const OsmesaFunctions &osmesa) : osmesa_(osmesa) {}
+    ~OsmesaContext() override
+    {
+        if (context_)
+            osmesa_.destroy(context_);
+    }
+
+    Status start()
+    {
+        context_ = osmesa_.create(OSMESA_RGBA, 0, 0, 0, nullptr);
+        if (!context_ || !osmesa_.make_current(context_, pixels_.data(), GL_UNSIGNED_BYTE,
+                                               window_size, window_size))
+            return Error{"OSMesa makes no context"};
+        auto gl = load_gl([this](const char *name) { return osmesa_.proc_address(name); });
+        if (!gl)
+            return gl.error();
+        gl_ = *gl;
+        return ok;
+    }
+
+private:
+    static constexpr int window_size = 16; // OSMesa wants a window; nothing is drawn to it.
+
+    OsmesaFunctions osmesa_;
+    OSMesaContext context_ = nullptr;
+    std::array<GLubyte, 4 * window_size * window_size> pixels_{};
+};
+
+} // namespace
+
+Result<std::unique_ptr<Context>> make_osmesa_context()
+{
+    auto library = SharedLibrary::open("libOSMesa.so.8");
+    if (!library)
+        return library.error();
+    OsmesaFunctions osmesa;
+    if (!library->load(osmesa.create, "OSMesaCreateContextExt") ||
+        !library->load(osmesa.destroy, "OSMesaDestroyContext") ||
+        !library->load(osmesa.make_current, "OSMesaMakeCurrent") ||
+        !library->load(osmesa.proc_address, "OSMesaGetProcAddress"))
+        return Error{"libOSMesa.so.8 lacks a function of OSMesa"};
+    auto context = std::make_unique<OsmesaContext>(osmesa);
+    if (auto started = context->start(); !started)
+        return started.error();
+    return std::unique_ptr<Context>(std::move(context));
+}
+
+} // namespace kb

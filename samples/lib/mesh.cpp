@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+
+#include "mesh.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kb
+{
+
+static bool is_finite(glm::vec3 v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+Status check_mesh(const Mesh &mesh)
+{
+    if (mesh.indices.empty() || mesh.positions.empty())
+        return Error{"the mesh has no triangles"};
+    if (mesh.indices.size() % 3 != 0)
+        return Error{"the mesh's last triangle is cut off"};
+    if (mesh.normals.size() != mesh.positions.size() ||
+        (!mesh.colors.empty() && mesh.colors.size() != mesh.positions.size()))
+        return Error{"the mesh has not one normal and one color for each vertex"};
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        if (!is_finite(mesh.positions[i]))
+            return Error{fmt::format("vertex {} of the mesh is not finite", i)};
+        if (!is_finite(mesh.normals[i]))
+            return Error{fmt::format("normal {} of the mesh is not finite", i)};
+    }
+    const auto farthest = std::max_element(mesh.indices.begin(), mesh.indices.end());
+    if (*farthest >= mesh.positions.size())
+        return Error{fmt::format("index {} of the mesh is {}, but it has {} vertices",
+                                 farthest - mesh.indices.begin(), *farthest,
+                                 mesh.positions.size())};
+    return ok;
+}
+
+void fit_to_unit_sphere(Mesh &mesh)
+{
+    if (mesh.positions.empty())
+        return;
+    glm::vec3 low(std::numeric_limits<float>::max());
+    glm::vec3 high(std::numeric_limits<float>::lowest());
+    for (const auto &p : mesh.positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::vec3 center = 0.5F * low + 0.5F * high;
+    float radius = 0.0F;
+    for (const auto &p : mesh.positions)
+        radius = std::max(radius, glm::distance(p, center));
+    const float scale = radius > 0.0F ? 1.0F / radius : 1.0F;
+    for (auto &p : mesh.positions)
+        p = (p - center) * scale;
+}
+
+/// A hue of full saturation, for a turn of 0 to 1.
+static glm::vec3 hue(float turn)
+{
+    const auto channel = [turn](float shift) {
+        return 0.55F + 0.45F * std::cos(glm::two_pi<float>() * (turn + shift));
+    };
+    return {channel(0.0F), channel(1.0F / 3.0F), channel(2.0F / 3.0F)};
+}
+
+/// A grid of (columns + 1) x (rows + 1) vertices, already appended from `first` on, row by row.
+static void append_grid_indices(Mesh &mesh, std::uint32_t first, int columns, int rows)
+{
+    const auto stride = static_cast<std::uint32_t>(columns + 1);
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            const std::uint32_t a = first + static_cast<std::uint32_t>(row) * stride +
+                                    static_cast<std::uint32_t>(column);
+            const std::uint32_t c = a + stride;
+            mesh.indices.insert(mesh.indices.end(), {a, a + 1, c, c, a + 1, c + 1});
+        }
+    }
+}
+
+Mesh make_knot(std::size_t triangles)
+{
+    constexpr float tau = glm::two_pi<float>();
+    constexpr float tube_radius = 0.42F;
+    // The way is about 12 times as long as the tube is round.
+    const int around = std::max(3, static_cast<int>(std::sqrt(double(triangles) / 24.0)));
+    const int along = std::max(8, static_cast<int>(double(triangles) / (2.0 * around)));
+
+    const auto way = [](float t) {
+        return glm::vec3(std::sin(tau * t) + 2.0F * std::sin(2.0F * tau * t),
+                         std::cos(tau * t) - 2.0F * std::cos(2.0F * tau * t),
+                         -1.4F * std::sin(3.0F * tau * t));
+    };
+
+    Mesh mesh;
+    for (int i = 0; i <= along; ++i) {
+        const float t = static_cast<float>(i) / static_cast<float>(along);
+        const glm::vec3 tangent = glm::normalize(way(t + 1e-3F) - way(t - 1e-3F));
+        const glm::vec3 side = glm::normalize(glm::cross(tangent, glm::vec3(0.0F, 0.0F, 1.0F)));
+        const glm::vec3 up = glm::cross(side, tangent);
+        for (int j = 0; j <= around; ++j) {
+            const float angle = tau * static_cast<float>(j) / static_cast<float>(around);
+            const glm::vec3 normal = std::cos(angle) * side + std::sin(angle) * up;
+            mesh.positions.push_back(way(t) + tube_radius * normal);
+            mesh.normals.push_back(normal);
+            mesh.colors.emplace_back(hue(2.0F * t), 0.4F);
+        }
+    }
+    append_grid_indices(mesh, 0, around, along);
+    fit_to_unit_sphere(mesh);
+    return mesh;
+}
+
+void append_sphere(Mesh &mesh, glm::vec3 center, float radius, glm::vec4 color, int slices,
+                   int stacks)
+{
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (int i = 0; i <= stacks; ++i) {
+        const float polar = glm::pi<float>() * static_cast<float>(i) / static_cast<float>(stacks);
+        for (int j = 0; j <= slices; ++j) {
+            const float turn =
+                glm::two_pi<float>() * static_cast<float>(j) / static_cast<float>(slices);
+            const glm::vec3 normal(std::sin(polar) * std::cos(turn), std::cos(polar),
+                                   -std::sin(polar) * std::sin(turn));
+            mesh.positions.push_back(center + radius * normal);
+            mesh.normals.push_back(normal);
+            mesh.colors.push_back(color);
+        }
+    }
+    append_grid_indices(mesh, first, slices, stacks);
+}
+
+void append_quad(Mesh &mesh, glm::vec3 corner, glm::vec3 u, glm::vec3 v, glm::vec4 color)
+{
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const glm::vec3 normal = glm::normalize(glm::cross(u, v));
+    for (const glm::vec3 &p : {corner, corner + u, corner + v, corner + u + v}) {
+        mesh.positions.push_back(p);
+        mesh.normals.push_back(normal);
+        mesh.colors.push_back(color);
+    }
+    append_grid_indices(mesh, first, 1, 1);
+}
+
+} // namespace kb

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+//
+// Triangle meshes: a plain struct, files read by Assimp, generated models.
+
+#pragma once
+
+#include "result.hpp"
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace kb
+{
+
+struct Mesh {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals; ///< One a vertex.
+    std::vector<glm::vec4> colors;  ///< RGBA, one a vertex, or empty: then the sample chooses.
+    std::vector<std::uint32_t> indices;
+
+    std::size_t triangle_count() const { return indices.size() / 3; }
+};
+
+/// An error that names the first thing that makes the mesh unfit for drawing: no triangles, lists
+/// of different lengths, a coordinate that is no finite number, an index without a vertex.
+Status check_mesh(const Mesh &mesh);
+
+/// Reads OBJ, PLY, STL or glTF 2.0. Polygons are cut into triangles, points and lines left out,
+/// missing normals made smooth. The mesh has passed check_mesh.
+Result<Mesh> load_mesh(const std::filesystem::path &path);
+
+/// Moves and scales the mesh so that its bounding sphere about the middle of its box is the unit
+/// sphere.
+void fit_to_unit_sphere(Mesh &mesh);
+
+/// A translucent model for those who have none at hand: a trefoil knot of tubes, colored along its
+/// way, with about the given number of triangles. Depth complexity is about 8.
+Mesh make_knot(std::size_t triangles);
+
+void append_sphere(Mesh &mesh, glm::vec3 center, float radius, glm::vec4 color, int slices,
+                   int stacks);
+
+/// The parallelogram of a corner and two edges, with the normal cross(u, v).
+void append_quad(Mesh &mesh, glm::vec3 corner, glm::vec3 u, glm::vec3 v, glm::vec4 color);
+
+} // namespace kb

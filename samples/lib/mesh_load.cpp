@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+
+#include "mesh.hpp"
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace kb
+{
+
+/// What Assimp's own processing would trip over: it trusts the indices of the file.
+static Status check_raw_mesh(const aiMesh &mesh)
+{
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+        const aiVector3D &p = mesh.mVertices[i];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            return Error{fmt::format("vertex {} is not finite", i)};
+    }
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+        const aiFace &face = mesh.mFaces[i];
+        for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
+            if (index >= mesh.mNumVertices)
+                return Error{fmt::format("face {} has index {}, but there are {} vertices", i,
+                                         index, mesh.mNumVertices)};
+        }
+    }
+    return ok;
+}
+
+static glm::vec3 to_vec3(const aiVector3D &v)
+{
+    return {v.x, v.y, v.z};
+}
+
+static void append(Mesh &mesh, const aiMesh &part)
+{
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+        mesh.positions.push_back(to_vec3(part.mVertices[i]));
+        // A vertex of degenerate triangles alone has no direction: any will do.
+        const aiVector3D normal = part.HasNormals() ? part.mNormals[i] : aiVector3D(0, 0, 1);
+        mesh.normals.push_back(std::isfinite(normal.SquareLength()) ? to_vec3(normal)
+                                                                    : glm::vec3(0, 0, 1));
+    }
+    if (part.HasVertexColors(0)) {
+        mesh.colors.resize(first, glm::vec4(1.0F));
+        for (unsigned i = 0; i < part.mNumVertices; ++i) {
+            const aiColor4D &c = part.mColors[0][i];
+            mesh.colors.emplace_back(c.r, c.g, c.b, c.a);
+        }
+    } else if (!mesh.colors.empty()) {
+        mesh.colors.resize(mesh.positions.size(), glm::vec4(1.0F));
+    }
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+        const aiFace &face = part.mFaces[i];
+        if (face.mNumIndices == 3)
+            for (const unsigned index : std::span(face.mIndices, 3))
+                mesh.indices.push_back(first + index);
+    }
+}
+
+Result<Mesh> load_mesh(const std::filesystem::path &path)
+{
+    const auto fail = [&path](const std::string &reason) {
+        std::string line = reason.substr(0, reason.find_first_of("\r\n"));
+        return Error{fmt::format("cannot read the mesh {}: {}", path.string(), line)};
+    };
+
+    std::error_code code;
+    if (!std::filesystem::exists(path, code))
+        return fail("no such file");
+    if (std::filesystem::is_directory(path, code))
+        return fail("it is a directory");
+
+    Assimp::Importer importer;
+    const aiScene *scene = importer.ReadFile(path.string(), 0);
+    if (!scene)
+        return fail(importer.GetErrorString());
+    for (const aiMesh *part : std::span(scene->mMeshes, scene->mNumMeshes)) {
+        if (auto checked = check_raw_mesh(*part); !checked)
+            return fail(checked.error().message);
+    }
+
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    scene = importer.ApplyPostProcessing(
+        aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices |
+        aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals);
+    if (!scene)
+        return fail("it has no triangles");
+
+    Mesh mesh;
+    for (const aiMesh *part : std::span(scene->mMeshes, scene->mNumMeshes))
+        append(mesh, *part);
+    if (auto checked = check_mesh(mesh); !checked)
+        return fail(checked.error().message);
+    return mesh;
+}
+
+} // namespace kb

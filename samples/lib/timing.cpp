@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+
+#include "timing.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace kb
+{
+
+Spread spread_of(std::span<const double> values)
+{
+    if (values.empty())
+        return {};
+    std::vector<double> sorted(values.begin(), values.end());
+    std::sort(sorted.begin(), sorted.end());
+    const auto percentile = [&sorted](double share) {
+        const double rank = share * static_cast<double>(sorted.size() - 1);
+        const auto below = static_cast<std::size_t>(rank);
+        const std::size_t above = std::min(below + 1, sorted.size() - 1);
+        const double part = rank - static_cast<double>(below);
+        return sorted[below] + part * (sorted[above] - sorted[below]);
+    };
+    return {percentile(0.5), percentile(0.05), percentile(0.95)};
+}
+
+double milliseconds(const Gl &gl, const std::function<void()> &work)
+{
+    gl.Finish();
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    gl.Finish();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
+}
+
+} // namespace kb
