@@ -1,0 +1,27 @@
+# Running programs on the Mesa of a prefix. To be sourced after scripts/lib/common.sh.
+# shellcheck shell=bash
+
+# use_prefix PREFIX: GL programs started from here on use its Mesa, through libglvnd or not.
+use_prefix() {
+    local lib
+    lib=$(dirname "$(find "$1" -name 'libEGL_mesa.so.0' -print -quit)")
+    [ -e "$lib/libEGL_mesa.so.0" ] || die "no Mesa with EGL in $1"
+    export LD_LIBRARY_PATH=$lib
+    export __GLX_VENDOR_LIBRARY_NAME=mesa
+    export __EGL_VENDOR_LIBRARY_FILENAMES=$1/share/glvnd/egl_vendor.d/50_mesa.json
+    # One build of Mesa must not be answered out of the cache of another.
+    export MESA_SHADER_CACHE_DISABLE=true
+    unset WAYLAND_DISPLAY PIGLIT_PLATFORM MESA_EXTENSION_OVERRIDE LIBGL_ALWAYS_SOFTWARE \
+        MESA_LOADER_DRIVER_OVERRIDE
+}
+
+# check_renderer DRIVER: the driver that answers in a surfaceless context is the one that is wanted.
+check_renderer() {
+    local renderer
+    renderer=$(GALLIUM_DRIVER=$1 wflinfo -p surfaceless_egl -a gl 2>&1 |
+        sed -n 's/^OpenGL renderer string: //p') || true
+    case $renderer in
+    "$1"*) ;;
+    *) die "asked for $1, but '$renderer' answers" "Is LD_LIBRARY_PATH's Mesa whole?" ;;
+    esac
+}

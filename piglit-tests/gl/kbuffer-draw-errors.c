@@ -1,0 +1,316 @@
+/*
+ * Copyright © 2026 The mesa-kbuffer authors
+ * SPDX-License-Identifier: MIT
+ */
+
+/**
+ * \file kbuffer-draw-errors.c
+ * Each state in which drawing with GL_KBUFFER_PROGRAM_MESA enabled is an
+ * error, by each kind of draw command: the right error, the framebuffer
+ * untouched, and drawing works again when the state is repaired or the stage
+ * is disabled.
+ */
+
+#include "kbuffer-common.h"
+
+static const float quad[4][2] = { { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } };
+static const GLubyte indices[4] = { 0, 1, 2, 3 };
+
+static void
+begin_end(void)
+{
+	glBegin(GL_QUADS);
+	if (glGetError() != GL_NO_ERROR) {
+		/* Begin failed, so that this is not inside of it. */
+		glDrawArrays(GL_QUADS, 0, 0);
+		return;
+	}
+	for (int i = 0; i < 4; i++)
+		glVertex2fv(quad[i]);
+	glEnd();
+}
+
+static void
+draw_arrays(void)
+{
+	glEnableClientState(GL_VERTEX_ARRAY);
+	glVertexPointer(2, GL_FLOAT, 0, quad);
+	glDrawArrays(GL_QUADS, 0, 4);
+	glDisableClientState(GL_VERTEX_ARRAY);
+}
+
+static void
+draw_elements(void)
+{
+	glEnableClientState(GL_VERTEX_ARRAY);
+	glVertexPointer(2, GL_FLOAT, 0, quad);
+	glDrawElements(GL_QUADS, 4, GL_UNSIGNED_BYTE, indices);
+	glDisableClientState(GL_VERTEX_ARRAY);
+}
+
+static void
+rect(void)
+{
+	glRectf(-1, -1, 1, 1);
+}
+
+static void
+draw_pixels(void)
+{
+	static const float pixels[8 * 8 * 4];
+
+	glWindowPos2i(0, 0);
+	glDrawPixels(8, 8, GL_RGBA, GL_FLOAT, pixels);
+}
+
+static void
+bitmap(void)
+{
+	static const GLubyte bits[8] = { 255, 255, 255, 255, 255, 255, 255, 255 };
+
+	glWindowPos2i(0, 0);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	glBitmap(8, 8, 0, 0, 0, 0, bits);
+}
+
+static const struct { const char *name; void (*draw)(void); } commands[] = {
+	{ "Rect", rect },
+	{ "DrawArrays", draw_arrays },
+	{ "DrawElements", draw_elements },
+	{ "Begin", begin_end },
+	{ "DrawPixels", draw_pixels },
+	{ "Bitmap", bitmap },
+};
+
+/** All draw commands give the error and leave 1, 2, 3, 4 in entry 0. */
+static bool
+check_refused(const struct kb *kb, GLenum error)
+{
+	bool pass = true;
+
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	for (int i = 0; i < ARRAY_SIZE(commands); i++) {
+		/* Begin's error is taken by its own function. */
+		const bool begin = commands[i].draw == begin_end;
+
+		commands[i].draw();
+		if (!piglit_check_gl_error(begin && error ==
+					   GL_INVALID_OPERATION ?
+					   GL_INVALID_OPERATION : error)) {
+			printf("by %s\n", commands[i].name);
+			pass = false;
+		}
+		if (kb && !kb_expect(kb, 0, 0, 1, 2, 3, 4)) {
+			printf("%s has drawn\n", commands[i].name);
+			kb_fill(kb, 0, 1, 2, 3, 4);
+			pass = false;
+		}
+	}
+	return pass;
+}
+
+/** With the stage disabled the same state draws. */
+static bool
+check_disabled_draws(const struct kb *kb)
+{
+	glDisable(GL_KBUFFER_PROGRAM_MESA);
+	glColor4f(1, 0, 1, 0);
+	rect();
+	return kb_expect(kb, 0, 0, 1, 0, 1, 0);
+}
+
+static struct kb
+make(void)
+{
+	struct kb kb = kb_create(GL_RGBA32F, 1, 0, 8, 8);
+
+	kb_fill(&kb, 0, 1, 2, 3, 4);
+	return kb;
+}
+
+static enum piglit_result
+no_program(void *data)
+{
+	struct kb kb = make();
+
+	return check_refused(&kb, GL_INVALID_OPERATION) &&
+		check_disabled_draws(&kb) ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+static enum piglit_result
+empty_program(void *data)
+{
+	struct kb kb = make();
+	GLuint name;
+	bool pass;
+
+	glGenProgramsARB(1, &name);
+	glBindProgramARB(GL_KBUFFER_PROGRAM_MESA, name);
+	pass = check_refused(&kb, GL_INVALID_OPERATION) &&
+		check_disabled_draws(&kb);
+	glDeleteProgramsARB(1, &name);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+static enum piglit_result
+failed_program(void *data)
+{
+	static const char bad[] = "!!ARBfp1.0\nOPTION MESA_kbuffer_program;\n"
+		"MOV result.color, 1;\nEND\n";
+	struct kb kb = make();
+	GLuint name;
+	bool pass;
+
+	glGenProgramsARB(1, &name);
+	glBindProgramARB(GL_KBUFFER_PROGRAM_MESA, name);
+	pass = kb_load(GL_KBUFFER_PROGRAM_MESA, bad, strlen(bad)) ==
+		GL_INVALID_OPERATION;
+	pass = check_refused(&kb, GL_INVALID_OPERATION) &&
+		check_disabled_draws(&kb) && pass;
+	glDeleteProgramsARB(1, &name);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+static enum piglit_result
+missing_entry(void *data)
+{
+	struct kb kb = make();
+	bool pass;
+
+	glColor4f(0, 0, 0, 0);
+	kb_program((const char *)data);
+	pass = check_refused(&kb, GL_INVALID_OPERATION);
+	kb_program("MOV result.kbuffer[0], 7;");
+	kb_draw(&kb);
+	pass = kb_expect(&kb, 0, 0, 7, 7, 7, 7) && pass;
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/** Two attachments of which the second is no draw buffer: entry 1 is gone. */
+static enum piglit_result
+draw_buffers(void *data)
+{
+	static const GLenum none[2] = { GL_COLOR_ATTACHMENT0, GL_NONE };
+	static const GLenum all[2] = { GL_COLOR_ATTACHMENT0,
+				       GL_COLOR_ATTACHMENT1 };
+	struct kb kb = kb_create(GL_RGBA32F, 2, 0, 8, 8);
+	bool pass;
+
+	kb_fill(&kb, 0, 1, 2, 3, 4);
+	kb_program("MOV result.kbuffer[0], kbuffer[1];");
+	glDrawBuffers(1, all);
+	pass = check_refused(&kb, GL_INVALID_OPERATION);
+	glDrawBuffers(2, none);
+	pass = check_refused(&kb, GL_INVALID_OPERATION) && pass;
+	glDrawBuffers(2, all);
+	kb_fill(&kb, 1, 5, 5, 5, 5);
+	kb_draw(&kb);
+	pass = kb_expect(&kb, 0, 0, 5, 5, 5, 5) && pass;
+
+	/* Entry 0 itself may not be missing either. */
+	kb_fill(&kb, 0, 1, 2, 3, 4);
+	glDrawBuffers(2, (GLenum[]) { GL_NONE, GL_COLOR_ATTACHMENT1 });
+	pass = check_refused(&kb, GL_INVALID_OPERATION) && pass;
+	/* And a hole that the program does not name does no harm. */
+	kb_program("MOV result.kbuffer[1], 6;");
+	kb_draw(&kb);
+	pass = kb_expect(&kb, 1, 0, 6, 6, 6, 6) && pass;
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+static enum piglit_result
+no_draw_buffer(void *data)
+{
+	struct kb kb = make();
+
+	kb_program("MOV result.kbuffer[0], 7;");
+	glDrawBuffer(GL_NONE);
+	return check_refused(&kb, GL_INVALID_OPERATION) ?
+		PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/** A framebuffer without any attachment, made complete by its parameters. */
+static enum piglit_result
+no_attachments(void *data)
+{
+	struct kb kb = kb_create(GL_RGBA32F, 0, 0, 8, 8);
+
+	piglit_require_extension("GL_ARB_framebuffer_no_attachments");
+	glFramebufferParameteri(GL_FRAMEBUFFER,
+				GL_FRAMEBUFFER_DEFAULT_WIDTH, 8);
+	glFramebufferParameteri(GL_FRAMEBUFFER,
+				GL_FRAMEBUFFER_DEFAULT_HEIGHT, 8);
+	(void)kb;
+	kb_program("TEMP t;\nMOV t, fragment.color;");
+	return check_refused(NULL, GL_INVALID_OPERATION) ?
+		PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+static enum piglit_result
+incomplete(void *data)
+{
+	struct kb kb = make();
+	GLuint bad;
+
+	kb_program("MOV result.kbuffer[0], 7;");
+	glGenRenderbuffers(1, &bad);
+	glBindRenderbuffer(GL_RENDERBUFFER, bad);
+	glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, 8, 8);
+	/* A depth format at a color attachment. */
+	glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1,
+				  GL_RENDERBUFFER, bad);
+	bool pass = check_refused(&kb, GL_INVALID_FRAMEBUFFER_OPERATION);
+	glDeleteRenderbuffers(1, &bad);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+static enum piglit_result
+integer(void *data)
+{
+	const GLenum format = (GLenum)(intptr_t)data;
+	struct kb kb = make();
+	static const int fill[4] = { 9, 9, 9, 9 };
+	int got[8 * 8 * 4];
+	GLuint tex;
+	bool pass;
+
+	kb_program("MOV result.kbuffer[0], 7;");
+	glGenTextures(1, &tex);
+	glBindTexture(GL_TEXTURE_2D, tex);
+	glTexImage2D(GL_TEXTURE_2D, 0, format, 8, 8, 0, GL_RGBA_INTEGER,
+		     GL_INT, NULL);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, tex, 0);
+	glDrawBuffers(2, (GLenum[]) { GL_COLOR_ATTACHMENT0,
+				      GL_COLOR_ATTACHMENT1 });
+	glClearBufferiv(GL_COLOR, 1, fill);
+	/* The integer buffer is not named by the program, but is there. */
+	pass = check_refused(&kb, GL_INVALID_OPERATION);
+	glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA_INTEGER, GL_INT, got);
+	for (int i = 0; i < 8 * 8; i++)
+		pass = got[4 * i] == 9 && pass;
+	glDrawBuffer(GL_COLOR_ATTACHMENT0);
+	kb_draw(&kb);
+	pass = kb_expect(&kb, 0, 0, 7, 7, 7, 7) && pass;
+	glDeleteTextures(1, &tex);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+const struct piglit_subtest kbuffer_subtests[] = {
+	KB_SUBTEST("no-program", no_program, NULL),
+	KB_SUBTEST("empty-program", empty_program, NULL),
+	KB_SUBTEST("failed-program", failed_program, NULL),
+	KB_SUBTEST("missing-entry-read", missing_entry,
+		   "MOV result.kbuffer[0], kbuffer[1];"),
+	KB_SUBTEST("missing-entry-written", missing_entry,
+		   "MOV result.kbuffer[0], 0;\nMOV result.kbuffer[63], 1;"),
+	KB_SUBTEST("draw-buffers", draw_buffers, NULL),
+	KB_SUBTEST("no-draw-buffer", no_draw_buffer, NULL),
+	KB_SUBTEST("no-attachments", no_attachments, NULL),
+	KB_SUBTEST("incomplete-framebuffer", incomplete, NULL),
+	KB_SUBTEST("signed-integer", integer, GL_RGBA32I),
+	KB_SUBTEST("unsigned-integer", integer, GL_RGBA8UI),
+	KB_SUBTEST_END
+};
+
+KBUFFER_TEST(32)

@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+# Copyright © 2026 The mesa-kbuffer authors
+# SPDX-License-Identifier: MIT
+"""mkprofile.py SOURCE_DIR BUILD_DIR SHADER_RUNNER OUT.xml.gz
+
+Writes a piglit profile of this folder: a test for each executable in
+BUILD_DIR/bin and for each SOURCE_DIR/shaders/*.shader_test, by absolute paths,
+so that any piglit's `run` can execute them."""
+import glob
+import gzip
+import os
+import sys
+import xml.etree.ElementTree as et
+
+
+def tests(source, build, runner):
+    for path in sorted(glob.glob(build + '/bin/*')):
+        if os.access(path, os.X_OK):
+            yield os.path.basename(path), [os.path.abspath(path)]
+    for path in sorted(glob.glob(source + '/shaders/*.shader_test')):
+        name = os.path.basename(path)[:-len('.shader_test')]
+        yield name, [os.path.abspath(runner), os.path.abspath(path)]
+
+
+def main():
+    if len(sys.argv) != 5:
+        sys.exit(__doc__)
+    source, build, runner, out = sys.argv[1:]
+    found = list(tests(source, build, runner))
+    root = et.Element('PiglitTestList', count=str(len(found)), name='kbuffer')
+    for name, command in found:
+        test = et.SubElement(root, 'Test', type='gl',
+                             name='spec@mesa_kbuffer_program@' + name)
+        et.SubElement(test, 'option', name='command', value=repr(command))
+        et.SubElement(test, 'option', name='run_concurrent', value='True')
+    with gzip.open(out, 'wb') as file:
+        et.ElementTree(root).write(file, encoding='utf-8',
+                                   xml_declaration=True)
+
+
+main()
