@@ -44,6 +44,14 @@ void MeshBuffers::draw() const
     gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(index_count_), GL_UNSIGNED_INT, nullptr);
 }
 
+void MeshBuffers::draw_triangle(std::size_t triangle) const
+{
+    const Gl &gl = array_.gl();
+    gl.BindVertexArray(array_.id());
+    gl.DrawElements(GL_TRIANGLES, 3, GL_UNSIGNED_INT,
+                    reinterpret_cast<const void *>(3 * triangle * sizeof(std::uint32_t)));
+}
+
 void draw_full_screen(const Gl &gl, const VertexArray &empty)
 {
     gl.BindVertexArray(empty.id());

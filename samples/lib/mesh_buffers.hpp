@@ -16,6 +16,7 @@ public:
     MeshBuffers(const Gl &gl, const Mesh &mesh, glm::vec4 color = glm::vec4(1.0F));
 
     void draw() const;
+    void draw_triangle(std::size_t triangle) const;
     std::size_t triangle_count() const { return index_count_ / 3; }
 
 private:

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+//
+// Exact order-independent transparency: the k nearest fragments of each pixel are captured in ONE
+// pass over the geometry by a k-buffer program, then composed front to back.
+//
+//     declare what is captured   make_insertion_program (samples/programs)
+//     draw                       KBufferMethod::capture
+//     resolve                    ResolvePass
+
+#include "command_line.hpp"
+#include "context.hpp"
+#include "kbuffer.hpp"
+#include "method.hpp"
+#include "output.hpp"
+#include "timing.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace
+{
+
+struct Options {
+    std::string mesh;
+    int triangles = 100000;
+    std::string method = "kbuffer";
+    std::string layout = "packed";
+    std::string context = "osmesa";
+    int k = 8;
+    int repeat = 1;
+    std::optional<float> alpha;
+    kb::Size size;
+    kb::OrbitCamera camera;
+    kb::OutputPaths outputs;
+};
+
+void declare_options(CLI::App &app, Options &options)
+{
+    app.add_option("--mesh", options.mesh,
+                   "OBJ, PLY, STL or glTF 2.0 file; without, a knot is generated")
+        ->type_name("FILE");
+    app.add_option("--triangles", options.triangles, "Size of the generated knot")
+        ->check(CLI::Range(100, 10'000'000))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--method", options.method,
+                   "kbuffer (one pass), classic-peeling (k passes) or unsorted (wrong, one pass)")
+        ->check(CLI::IsMember({"kbuffer", "classic-peeling", "unsorted"}))
+        ->type_name("NAME")
+        ->capture_default_str();
+    app.add_option("--k", options.k, "Layers to keep, 1 to 64")
+        ->check(CLI::Range(1, 64))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--layout", options.layout,
+                   "packed (two fragments of RGBA8 and depth an entry) or rgbz (one of float RGB "
+                   "and depth; all fragments have the same alpha)")
+        ->check(CLI::IsMember({"packed", "rgbz"}))
+        ->type_name("NAME")
+        ->capture_default_str();
+    app.add_option("--alpha", options.alpha,
+                   "Alpha of all fragments, 0 to 1, instead of the mesh's (rgbz: 0.4)")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("A");
+    kb::add_context_option(app, options.context);
+    kb::add_size_option(app, options.size);
+    app.add_option("--azimuth", options.camera.azimuth, "Degrees about the vertical axis")
+        ->check(CLI::Range(-360.0, 360.0))
+        ->type_name("DEG");
+    app.add_option("--elevation", options.camera.elevation, "Degrees from above")
+        ->check(CLI::Range(-90.0, 90.0))
+        ->type_name("DEG");
+    app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")
+        ->check(CLI::Range(1, 10'000))
+        ->type_name("N");
+    app.add_option("--out", options.outputs.picture, "Write the picture")->type_name("FILE.png");
+    app.add_option("--float-out", options.outputs.floats, "Write the picture before rounding")
+        ->type_name("FILE.pfm");
+    app.add_option("--layers-out", options.outputs.layers, "Write color and depth of each layer")
+        ->type_name("DIR");
+}
+
+kb::Result<std::unique_ptr<kb::Method>> make_method(const kb::Gl &gl, const Options &options,
+                                                    kb::EntryLayout layout)
+{
+    kb::MethodOptions method;
+    method.size = options.size;
+    method.k = options.k;
+    method.layout = layout;
+    method.alpha = options.alpha.value_or(method.alpha);
+    if (options.method == "classic-peeling")
+        return kb::make_peeling_method(gl, method);
+    if (options.method == "unsorted")
+        return kb::make_unsorted_method(gl, method);
+    if (auto supported = kb::require_kbuffer_program(gl); !supported)
+        return supported.error();
+    return kb::make_kbuffer_method(gl, method);
+}
+
+/// What cannot go on, and the exit status that says whose fault it is.
+struct Failure {
+    kb::Error error;
+    int status;
+};
+
+std::optional<Failure> run(Options options, const kb::Mesh &mesh, kb::EntryLayout layout)
+{
+    const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
+
+    auto context = kb::make_context(options.context, options.size, "transparency");
+    if (!context)
+        return lacking(context.error());
+    const kb::Gl &gl = (*context)->gl();
+    auto method = make_method(gl, options, layout);
+    if (!method)
+        return lacking(method.error());
+
+    // RGBZ keeps no alpha: all fragments must have the one that the resolve pass uses.
+    const bool rgbz = layout == kb::EntryLayout::rgbz;
+    const kb::Scene scene(gl, mesh, rgbz ? options.alpha.value_or(0.4F) : options.alpha);
+    const kb::Texture picture =
+        kb::make_texture_2d(gl, GL_RGBA32F, options.size.width, options.size.height);
+    const kb::Framebuffer framebuffer(gl);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture.id(), 0);
+    if (auto complete = kb::check_framebuffer(gl); !complete)
+        return lacking(complete.error());
+
+    const auto draw = [&] {
+        (*method)->capture(scene, options.camera);
+        (*method)->resolve(framebuffer.id());
+    };
+    std::vector<double> times;
+    for (int i = 0; i < options.repeat; ++i)
+        times.push_back(kb::milliseconds(gl, draw));
+    if (auto drawn = kb::check_gl(gl, "drawing"); !drawn)
+        return lacking(drawn.error());
+
+    const kb::ImageRgbaF image = kb::read_color(gl, framebuffer.id(), options.size);
+    const auto layers =
+        options.outputs.layers.empty() ? std::vector<kb::Layer>{} : (*method)->read_layers();
+    if (auto written = kb::write_outputs(options.outputs, image, layers); !written)
+        return Failure{written.error(), kb::exit_bad_input};
+
+    const kb::Spread spread = kb::spread_of(times);
+    fmt::print("{} k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), {} geometry "
+               "pass{}, {} triangles, {} bytes per pixel\n",
+               options.method, options.k, options.size.width, options.size.height, spread.median,
+               spread.p5, spread.p95, times.size(), (*method)->geometry_passes(),
+               (*method)->geometry_passes() == 1 ? "" : "es", scene.triangle_count(),
+               (*method)->bytes_per_pixel());
+
+    while ((*context)->present(framebuffer.id(), options.size, options.camera))
+        draw();
+    return std::nullopt;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    Options options;
+    CLI::App app("Draws a translucent mesh: the k nearest fragments of each pixel are captured in "
+                 "one pass by\na k-buffer program (GL_MESA_kbuffer_program) and composed front to "
+                 "back.",
+                 "transparency");
+    declare_options(app, options);
+    if (const auto status = kb::parse_command_line(app, argc, argv))
+        return *status;
+
+    const auto layout = kb::parse_entry_layout(options.layout);
+    if (!layout)
+        return kb::fail(app, layout.error(), kb::exit_bad_input);
+    if (options.method == "unsorted" && !options.outputs.layers.empty())
+        return kb::fail(app, kb::Error{"--layers-out: the method unsorted keeps no layers"},
+                        kb::exit_bad_input);
+    auto mesh = options.mesh.empty()
+                    ? kb::Result(kb::make_knot(static_cast<std::size_t>(options.triangles)))
+                    : kb::load_mesh(options.mesh);
+    if (!mesh)
+        return kb::fail(app, mesh.error(), kb::exit_bad_input);
+    kb::fit_to_unit_sphere(*mesh);
+    if (auto writable = kb::check_writable(options.outputs); !writable)
+        return kb::fail(app, writable.error(), kb::exit_bad_input);
+
+    if (const auto failure = run(options, *mesh, *layout))
+        return kb::fail(app, failure->error, failure->status);
+    return 0;
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include "method.hpp"
+
+#include <filesystem>
+
+namespace kb
+{
+
+/// Where results go; empty paths are not written.
+struct OutputPaths {
+    std::filesystem::path picture; ///< PNG
+    std::filesystem::path floats;  ///< PFM
+    std::filesystem::path layers;  ///< A directory.
+
+    bool empty() const { return picture.empty() && floats.empty() && layers.empty(); }
+};
+
+/// Finds out before any work whether all of them can be written. Makes the directory of the layers.
+Status check_writable(const OutputPaths &paths);
+
+/// Layers are written as layer-NN.png (RGBA), layer-NN.pfm (the same color as floats) and
+/// layer-NN-depth.pfm.
+Status write_outputs(const OutputPaths &paths, const ImageRgbaF &image,
+                     const std::vector<Layer> &layers);
+
+} // namespace kb
