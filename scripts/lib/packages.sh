@@ -46,20 +46,26 @@ apt_progress() {
 }
 
 apt_install() { # as root, or through sudo
-    local sudo=() log=$logs/packages.log
+    local sudo=() log=$logs/packages.log folder wanted reader
     [ "$EUID" -eq 0 ] || sudo=(sudo)
     mkdir -p "$logs"
     # Lists that cannot be renewed are no error yet: the packages may be had all the same.
     "${sudo[@]}" apt-get -q update >"$log" 2>&1 || warn "apt-get update failed: $(tail -n 1 "$log")"
-    local wanted
     mapfile -t wanted < <(missing_packages "$@")
-    # Status-Fd 1 because sudo closes the others; configure -a resumes an interrupted installation.
-    {
-        "${sudo[@]}" dpkg --configure -a &&
-            "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q \
-                --no-install-recommends -o APT::Status-Fd=1 -o Dpkg::Use-Pty=0 \
-                -o DPkg::Lock::Timeout=300 "${wanted[@]}"
-    } 2>&1 9>&- </dev/null | tee -a "$log" | apt_progress "packages"
+    # An interrupted installation is resumed by this.
+    "${sudo[@]}" dpkg --configure -a >>"$log" 2>&1 || true
+    # The progress needs a pipe of its own (apt makes it non-blocking, which breaks programs that
+    # print to it) with a name (sudo closes all other files).
+    make_temporary folder
+    mkfifo "$folder/progress"
+    apt_progress "packages" <"$folder/progress" 9>&- &
+    reader=$!
+    # shellcheck disable=SC2016 # expanded by the inner shell
+    "${sudo[@]}" sh -c 'DEBIAN_FRONTEND=noninteractive exec apt-get install -y -q \
+        --no-install-recommends -o APT::Status-Fd=3 -o Dpkg::Use-Pty=0 \
+        -o DPkg::Lock::Timeout=300 "$@" 3>"$0"' \
+        "$folder/progress" "${wanted[@]}" >>"$log" 2>&1 9>&- </dev/null || true
+    wait "$reader" || true
 }
 
 may_become_root() {
@@ -93,7 +99,7 @@ need_packages() {
         read -r -p "    Go on? [Y/n] " answer
         [[ $answer =~ ^([Yy].*)?$ ]] || die "nothing was installed" "By hand, as root: $by_hand"
     fi
-    apt_install "$@" || true
+    apt_install "$@"
     mapfile -t missing < <(missing_packages "$@")
     [ ${#missing[@]} -eq 0 ] || package_failure "${missing[@]}"
 }
