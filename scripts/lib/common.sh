@@ -107,7 +107,7 @@ die_with_log() { # WHAT LOG
     fi
     printf '%s\n' '---' >&2
     if grep -q '^FAILED:' "$2"; then
-        grep -A 30 -m 1 '^FAILED:' "$2" >&2
+        grep -B 15 -A 30 -m 1 '^FAILED:' "$2" >&2
     else
         tail -n 30 "$2" >&2
     fi

@@ -54,27 +54,46 @@ unpack_tree() {
     mv "$folder" "$1"
 }
 
+# second_tree VARIABLE: a temporary work tree of build/mesa, at the release, in which only the files
+# lie that hooks change (11,000 files would take longer than all else)
+second_tree() {
+    local -n second=$1
+    local parent
+    make_temporary parent
+    second=$parent/tree
+    git -C "$tree" worktree prune
+    git -C "$tree" worktree add -q --no-checkout --detach "$second" upstream
+    {
+        echo /meson.build
+        hook_files | xargs -r sed -n 's|^diff --git a/\(.*\) b/.*|/\1|p'
+    } | git -C "$second" sparse-checkout set --no-cone --stdin
+    git -C "$second" checkout -q
+}
+
+# commit_hooks TREE: each hook as a commit, exactly as it is written: no fuzz, no three-way merge
+commit_hooks() {
+    local hook
+    while read -r hook; do
+        committed_by_script git -C "$1" am -q --no-3way --keep-cr --whitespace=nowarn \
+            --no-gpg-sign --committer-date-is-author-date "$hook" >"$1.log" 2>&1 ||
+            die "$(basename "$hook") does not apply to Mesa $mesa_version" \
+                "$(grep -m 3 '^error:' "$1.log")" "${tree#"$root"/} is as it was before."
+    done < <(hook_files)
+}
+
 # The new commits are made in a second work tree, so that a patch that fails leaves the tree as it
 # was, and so that only files that do change are touched and compiled again.
 apply_hooks() {
-    local folder hook tip
-    make_temporary folder
-    git -C "$tree" worktree prune
-    git -C "$tree" worktree add -q --detach "$folder/tree" upstream
-    while read -r hook; do
-        committed_by_script git -C "$folder/tree" am -q --no-3way --keep-cr \
-            --whitespace=nowarn --committer-date-is-author-date "$hook" >"$folder/am.log" 2>&1 || {
-            cat "$folder/am.log" >&2
-            rm -rf "$folder/tree"
-            git -C "$tree" worktree prune
-            die "$(basename "$hook") does not apply to Mesa $mesa_version" \
-                "${tree#"$root"/} is as it was before."
-        }
-    done < <(hook_files)
-    tip=$(git -C "$folder/tree" rev-parse HEAD)
-    rm -rf "$folder/tree"
-    git -C "$tree" worktree prune
-    git -C "$tree" reset -q --hard "$tip"
+    local made
+    second_tree made
+    commit_hooks "$made"
+    git -C "$tree" reset -q --hard "$(git -C "$made" rev-parse HEAD)"
+}
+
+# format_patches RANGE FOLDER: the same bytes for the same commits, whoever makes them
+format_patches() {
+    GIT_CONFIG_GLOBAL=/dev/null git -C "$tree" format-patch -q --no-numbered --zero-commit \
+        --no-signature --abbrev=12 -o "$2" "$1"
 }
 
 # A link that an editor has replaced by a file of its own
