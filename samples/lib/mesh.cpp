@@ -83,21 +83,18 @@ static void append_grid_indices(Mesh &mesh, std::uint32_t first, int columns, in
     }
 }
 
-Mesh make_knot(std::size_t triangles)
+/// A closed tube of the given radius along a trefoil knot.
+static void append_knot(Mesh &mesh, float tube_radius, float hue_shift, float alpha, int along,
+                        int around)
 {
     constexpr float tau = glm::two_pi<float>();
-    constexpr float tube_radius = 0.42F;
-    // The way is about 12 times as long as the tube is round.
-    const int around = std::max(3, static_cast<int>(std::sqrt(double(triangles) / 24.0)));
-    const int along = std::max(8, static_cast<int>(double(triangles) / (2.0 * around)));
-
     const auto way = [](float t) {
         return glm::vec3(std::sin(tau * t) + 2.0F * std::sin(2.0F * tau * t),
                          std::cos(tau * t) - 2.0F * std::cos(2.0F * tau * t),
                          -1.4F * std::sin(3.0F * tau * t));
     };
 
-    Mesh mesh;
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (int i = 0; i <= along; ++i) {
         const float t = static_cast<float>(i) / static_cast<float>(along);
         const glm::vec3 tangent = glm::normalize(way(t + 1e-3F) - way(t - 1e-3F));
@@ -108,10 +105,21 @@ Mesh make_knot(std::size_t triangles)
             const glm::vec3 normal = std::cos(angle) * side + std::sin(angle) * up;
             mesh.positions.push_back(way(t) + tube_radius * normal);
             mesh.normals.push_back(normal);
-            mesh.colors.emplace_back(hue(2.0F * t), 0.4F);
+            mesh.colors.emplace_back(hue(2.0F * t + hue_shift), alpha);
         }
     }
-    append_grid_indices(mesh, 0, around, along);
+    append_grid_indices(mesh, first, around, along);
+}
+
+Mesh make_knot(std::size_t triangles)
+{
+    // Both tubes have half of the triangles; the way is some 12 times as long as a tube is round.
+    const double quads = static_cast<double>(triangles) / 4.0;
+    const int around = std::max(3, static_cast<int>(std::sqrt(quads / 12.0)));
+    const int along = std::max(8, static_cast<int>(quads / around));
+    Mesh mesh;
+    append_knot(mesh, 0.6F, 0.0F, 0.3F, along, around);
+    append_knot(mesh, 0.25F, 0.5F, 0.7F, along, around);
     fit_to_unit_sphere(mesh);
     return mesh;
 }

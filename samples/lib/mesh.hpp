@@ -37,8 +37,8 @@ Result<Mesh> load_mesh(const std::filesystem::path &path);
 /// sphere.
 void fit_to_unit_sphere(Mesh &mesh);
 
-/// A translucent model for those who have none at hand: a trefoil knot of tubes, colored along its
-/// way, with about the given number of triangles. Depth complexity is about 8.
+/// A translucent model for those who have none at hand: a tube within a tube along a trefoil knot,
+/// colored along its way, with about the given number of triangles. Up to 8 fragments meet.
 Mesh make_knot(std::size_t triangles);
 
 void append_sphere(Mesh &mesh, glm::vec3 center, float radius, glm::vec4 color, int slices,
