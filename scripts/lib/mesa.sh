@@ -44,7 +44,7 @@ debug_options=(--buildtype=debugoptimized -Db_ndebug=false)
 configure() {
     local what=$1 source=$2 dir=$3 stamp
     shift 3
-    stamp=$(printf '%s\n' "${meson[*]}" "$(cat "$native")" "${configure_for:-}" "$@")
+    stamp=$(printf '%s\n' "${meson[*]}" "$(cat "$native")" "$@")
     [ "$(cat "$dir/.kbuffer-options" 2>/dev/null)" != "$stamp" ] || return 0
     say "Configuring $what"
     rm -rf "$dir"
@@ -78,9 +78,6 @@ build_project() {
     local start=$SECONDS
     [ -f "$root/meson.build" ] || return 0
     export PKG_CONFIG_PATH=$build/prefix/$libdir/pkgconfig
-    # What is built depends on the libraries that scripts/test installs.
-    local configure_for
-    configure_for=$(pkg-config --modversion gtest benchmark 2>/dev/null || true)
     configure "the project" "$root" "$build/project" --buildtype=release \
         -Dprefix="$build/prefix" --libdir="$libdir"
     say "Building the project"
