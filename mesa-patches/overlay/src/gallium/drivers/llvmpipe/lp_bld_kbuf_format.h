@@ -1,0 +1,50 @@
+/*
+ * Copyright © 2026 The mesa-kbuffer authors
+ * SPDX-License-Identifier: MIT
+ */
+
+/**
+ * \file lp_bld_kbuf_format.h
+ * Pixels of a color buffer as SoA vectors of 32-bit words, and what the words
+ * mean.
+ *
+ * A group is two rows of two or four pixels (one or two quads side by side).
+ * All of it is loaded and stored, masked or not: a block of 4x4 pixels
+ * belongs to one thread, and every texture is padded to whole blocks.  Only
+ * an explicit 1D resource has a single row.
+ */
+
+#ifndef LP_BLD_KBUF_FORMAT_H
+#define LP_BLD_KBUF_FORMAT_H
+
+#include "gallivm/lp_bld.h"
+#include "gallivm/lp_bld_type.h"
+#include "util/format/u_format.h"
+
+struct gallivm_state;
+
+struct lp_kbuf_pixels
+{
+   struct gallivm_state *gallivm;
+   struct lp_type type;        /**< float vectors of 4 or 8 lanes */
+   const struct util_format_description *desc;
+   LLVMValueRef rows[2];       /**< byte pointers, [1] is NULL in 1D */
+};
+
+/** Whether conversions need denormals, which are off in raster threads. */
+bool
+lp_kbuf_format_needs_denormals(const struct util_format_description *desc);
+
+void
+lp_build_kbuf_load(const struct lp_kbuf_pixels *pixels, LLVMValueRef rgba[4]);
+
+/**
+ * Store the components of write_mask in the lanes of mask; all other bits
+ * keep their values.
+ */
+void
+lp_build_kbuf_store(const struct lp_kbuf_pixels *pixels,
+                    LLVMValueRef mask, unsigned write_mask,
+                    const LLVMValueRef rgba[4]);
+
+#endif /* LP_BLD_KBUF_FORMAT_H */

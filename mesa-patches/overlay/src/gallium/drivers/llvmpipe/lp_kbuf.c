@@ -1,0 +1,317 @@
+/*
+ * Copyright © 2026 The mesa-kbuffer authors
+ * SPDX-License-Identifier: MIT
+ */
+
+#include "lp_kbuf.h"
+
+#include "compiler/nir/nir.h"
+#include "compiler/nir/nir_serialize.h"
+#include "draw/draw_context.h"
+#include "util/blob.h"
+#include "util/format/u_format.h"
+#include "util/mesa-sha1.h"
+#include "util/u_memory.h"
+
+#include "lp_context.h"
+#include "lp_flush.h"
+#include "lp_jit.h"
+#include "lp_scene.h"
+#include "lp_setup_context.h"
+#include "lp_state.h"
+#include "lp_state_fs.h"
+#include "lp_texture.h"
+
+
+static void
+program_reference(struct lp_kbuf_program **ptr,
+                  struct lp_kbuf_program *program)
+{
+   struct lp_kbuf_program *old = *ptr;
+
+   if (pipe_reference(old ? &old->reference : NULL,
+                      program ? &program->reference : NULL)) {
+      ralloc_free(old->nir);
+      FREE(old);
+   }
+   *ptr = program;
+}
+
+
+/** Find out what the program reads and writes. */
+static void
+gather_program_info(struct lp_kbuf_program *program)
+{
+   nir_shader *nir = program->nir;
+
+   nir_shader_gather_info(nir, nir_shader_get_entrypoint(nir));
+   program->num_samplers = MAX2(BITSET_LAST_BIT(nir->info.samplers_used),
+                                BITSET_LAST_BIT(nir->info.textures_used));
+   assert(program->num_samplers <= PIPE_MAX_SAMPLERS);
+
+   nir_foreach_shader_in_variable(var, nir) {
+      if (var->data.location >= VARYING_SLOT_VAR0) {
+         program->num_colors = MAX2(program->num_colors,
+                                    var->data.location + 1 - VARYING_SLOT_VAR0);
+      }
+   }
+   assert(program->num_colors <= PIPE_MAX_COLOR_BUFS);
+
+   nir_foreach_block(block, nir_shader_get_entrypoint(nir)) {
+      nir_foreach_instr(instr, block) {
+         if (instr->type != nir_instr_type_intrinsic)
+            continue;
+
+         nir_intrinsic_instr *intr = nir_instr_as_intrinsic(instr);
+         if (intr->intrinsic == nir_intrinsic_load_kbuffer_mesa ||
+             intr->intrinsic == nir_intrinsic_store_kbuffer_mesa) {
+            program->num_entries = MAX2(program->num_entries,
+                                        nir_intrinsic_base(intr) + 1);
+         }
+      }
+   }
+   assert(program->num_entries <= LP_MAX_KBUF_ENTRIES);
+}
+
+
+static void *
+llvmpipe_create_kbuffer_state(struct pipe_context *pipe,
+                              const struct pipe_shader_state *templ)
+{
+   struct lp_kbuf_program *program = CALLOC_STRUCT(lp_kbuf_program);
+   struct blob blob;
+
+   assert(templ->type == PIPE_SHADER_IR_NIR);
+   if (!program) {
+      ralloc_free(templ->ir.nir);
+      return NULL;
+   }
+   pipe_reference_init(&program->reference, 1);
+   program->nir = templ->ir.nir;
+   gather_program_info(program);
+
+   blob_init(&blob);
+   nir_serialize(&blob, program->nir, true);
+   _mesa_sha1_compute(blob.data, blob.size, program->sha1);
+   blob_finish(&blob);
+
+   return program;
+}
+
+
+static void
+llvmpipe_delete_kbuffer_state(struct pipe_context *pipe, void *state)
+{
+   struct lp_kbuf_program *program = state;
+
+   program_reference(&program, NULL);
+}
+
+
+static void
+llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
+                           const struct pipe_kbuffer_state *state)
+{
+   struct llvmpipe_context *lp = llvmpipe_context(pipe);
+   struct lp_kbuf_state *kbuf = &lp->kbuf;
+   const unsigned num_views = state ? state->num_sampler_views : 0;
+
+   draw_flush(lp->draw);
+
+   program_reference(&kbuf->program, state ? state->program : NULL);
+   kbuf->num_color_buffers = state ? state->num_color_buffers : 0;
+
+   for (unsigned i = 0; i < MAX2(num_views, kbuf->num_sampler_views); i++) {
+      struct pipe_sampler_view *view =
+         i < num_views ? state->sampler_views[i] : NULL;
+
+      if (view) {
+         llvmpipe_flush_resource(pipe, view->texture, 0, true, false, false,
+                                 "k-buffer sampler_view");
+      }
+      pipe_sampler_view_reference(&kbuf->sampler_views[i], view);
+      if (i < num_views)
+         kbuf->samplers[i] = state->samplers[i];
+   }
+   kbuf->num_sampler_views = num_views;
+
+   FREE(kbuf->constants);
+   kbuf->constants = NULL;
+   kbuf->constants_size = 0;
+   if (state && state->constants_size) {
+      kbuf->constants = mem_dup(state->constants, state->constants_size);
+      if (kbuf->constants)
+         kbuf->constants_size = state->constants_size;
+   }
+
+   lp->dirty |= LP_NEW_KBUFFER;
+}
+
+
+void
+lp_kbuf_init(struct llvmpipe_context *lp)
+{
+   lp->pipe.create_kbuffer_state = llvmpipe_create_kbuffer_state;
+   lp->pipe.delete_kbuffer_state = llvmpipe_delete_kbuffer_state;
+   lp->pipe.set_kbuffer_state = llvmpipe_set_kbuffer_state;
+}
+
+
+void
+lp_kbuf_destroy(struct llvmpipe_context *lp)
+{
+   struct lp_kbuf_state *kbuf = &lp->kbuf;
+
+   program_reference(&kbuf->program, NULL);
+   for (unsigned i = 0; i < kbuf->num_sampler_views; i++)
+      pipe_sampler_view_reference(&kbuf->sampler_views[i], NULL);
+   FREE(kbuf->constants);
+}
+
+
+void
+lp_kbuf_static_samplers(const struct lp_kbuf_state *kbuf,
+                        struct lp_sampler_static_state *samplers)
+{
+   const struct shader_info *info = &kbuf->program->nir->info;
+
+   memset(samplers, 0, kbuf->program->num_samplers * sizeof *samplers);
+   for (unsigned i = 0; i < kbuf->program->num_samplers; i++) {
+      const bool bound = i < kbuf->num_sampler_views;
+
+      if (BITSET_TEST(info->samplers_used, i) && bound) {
+         lp_sampler_static_sampler_state(&samplers[i].sampler_state,
+                                         &kbuf->samplers[i]);
+      }
+      if (BITSET_TEST(info->textures_used, i) && bound) {
+         lp_sampler_static_texture_state(&samplers[i].texture_state,
+                                         kbuf->sampler_views[i]);
+      }
+   }
+}
+
+
+/** Layers that every color buffer has. */
+static unsigned
+num_layers(const struct pipe_framebuffer_state *fb)
+{
+   unsigned layers = LP_MAX_KBUF_ENTRIES;
+
+   for (unsigned i = 0; i < fb->nr_cbufs; i++) {
+      const struct pipe_surface *surf = fb->cbufs[i];
+
+      if (surf)
+         layers = MIN2(layers, surf->u.tex.last_layer -
+                               surf->u.tex.first_layer + 1);
+   }
+   return layers;
+}
+
+
+void
+lp_kbuf_make_key(const struct llvmpipe_context *lp,
+                 struct lp_fragment_shader_variant_key *key)
+{
+   const struct lp_kbuf_program *program = lp->kbuf.program;
+   struct lp_sampler_static_state samplers[PIPE_MAX_SAMPLERS];
+   struct mesa_sha1 sha1;
+
+   /* The stage is there instead of these, so that they make no difference. */
+   key->blend.logicop_enable = 0;
+   key->blend.logicop_func = 0;
+   for (unsigned i = 0; i < PIPE_MAX_COLOR_BUFS; i++) {
+      const unsigned colormask = key->blend.rt[i].colormask;
+
+      memset(&key->blend.rt[i], 0, sizeof key->blend.rt[i]);
+      key->blend.rt[i].colormask = i < key->nr_cbufs ? colormask : 0;
+   }
+
+   if (!program)
+      return;
+
+   key->kbuf.num_colors = program->num_colors;
+   key->kbuf.num_entries = MIN2(program->num_entries,
+                                lp->kbuf.num_color_buffers *
+                                num_layers(&lp->framebuffer));
+
+   lp_kbuf_static_samplers(&lp->kbuf, samplers);
+   _mesa_sha1_init(&sha1);
+   _mesa_sha1_update(&sha1, program->sha1, sizeof program->sha1);
+   _mesa_sha1_update(&sha1, &lp->kbuf.num_color_buffers,
+                     sizeof lp->kbuf.num_color_buffers);
+   _mesa_sha1_update(&sha1, samplers,
+                     program->num_samplers * sizeof samplers[0]);
+   _mesa_sha1_final(&sha1, key->kbuf.sha1);
+}
+
+
+static void
+fill_resources(const struct lp_kbuf_state *kbuf,
+               const void *constants,
+               struct lp_jit_kbuf_resources *res)
+{
+   res->constants[0].u = constants;
+   res->constants[0].num_elements = kbuf->constants_size / sizeof(uint32_t);
+
+   for (unsigned i = 0; i < kbuf->num_sampler_views; i++) {
+      if (kbuf->sampler_views[i])
+         lp_jit_texture_from_pipe(&res->textures[i], kbuf->sampler_views[i]);
+      lp_jit_sampler_from_pipe(&res->samplers[i], &kbuf->samplers[i]);
+   }
+}
+
+
+bool
+lp_kbuf_update_scene(struct lp_setup_context *setup, bool new_scene)
+{
+   struct llvmpipe_context *lp = llvmpipe_context(setup->pipe);
+   const struct lp_kbuf_state *kbuf = &lp->kbuf;
+   struct lp_scene *scene = setup->scene;
+
+   setup->dirty |= LP_SETUP_NEW_FS;
+   setup->fs.current.kbuf = NULL;
+   if (lp->blend->kbuffer_mode == PIPE_KBUFFER_OFF || !kbuf->program)
+      return true;
+
+   struct lp_jit_kbuf *stored =
+      lp_scene_alloc_aligned(scene, sizeof *stored, LP_MIN_VECTOR_ALIGN);
+   if (!stored)
+      return false;
+   memset(stored, 0, sizeof *stored);
+
+   void *constants = NULL;
+   if (kbuf->constants_size) {
+      constants = lp_scene_alloc_aligned(scene, kbuf->constants_size,
+                                         LP_MIN_VECTOR_ALIGN);
+      if (!constants)
+         return false;
+      memcpy(constants, kbuf->constants, kbuf->constants_size);
+   }
+
+   for (unsigned i = 0; i < setup->fb.nr_cbufs; i++) {
+      const struct pipe_surface *surf = setup->fb.cbufs[i];
+
+      if (surf && llvmpipe_resource_is_texture(surf->texture)) {
+         stored->layer_stride[i] =
+            llvmpipe_layer_stride(surf->texture, surf->u.tex.level);
+      }
+   }
+
+   /* The reference keeps a display target mapped, not the resources. */
+   bool referenced = true;
+   fill_resources(kbuf, constants, &stored->resources);
+   for (unsigned i = 0; i < kbuf->num_sampler_views; i++) {
+      if (kbuf->sampler_views[i]) {
+         struct pipe_resource *texture = kbuf->sampler_views[i]->texture;
+
+         referenced &= lp_scene_add_resource_reference(scene, texture,
+                                                       new_scene, false);
+         llvmpipe_resource_unmap(texture, 0, 0);
+      }
+   }
+   if (!referenced)
+      return false;
+
+   setup->fs.current.kbuf = stored;
+   return true;
+}
