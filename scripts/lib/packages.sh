@@ -78,7 +78,7 @@ may_become_root() {
 need_packages() {
     [ -z "${KBUFFER_SKIP_PACKAGES:-}" ] || return 0
     local missing answer
-    if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    if [ ! -x /usr/bin/dpkg-query ] || [ ! -x /usr/bin/apt-get ]; then
         die "$distribution_name is not supported: Debian 12 and 13 are" \
             "Install what these Debian packages hold, then set KBUFFER_SKIP_PACKAGES=1:" \
             "$(package_lines "$@" | tr '\n' ' ')"

@@ -27,7 +27,7 @@ use_suite() {
     # The sandbox user of apt could not write into a user's folder.
     apt_options=(-o "Dir::Etc::SourceList=$1/sources.list" -o Dir::Etc::SourceParts=/dev/null
         -o "Dir::State::Lists=$1/lists" -o "Dir::Cache=$1/cache" -o APT::Sandbox::User=root
-        -o APT::Update::Error-Mode=any)
+        -o APT::Update::Error-Mode=any -o Acquire::Retries=1)
     apt-get "${apt_options[@]}" -qq update >"$1/update.log" 2>&1
 }
 

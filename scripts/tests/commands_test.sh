@@ -1,0 +1,69 @@
+# shellcheck shell=bash
+# Command lines: help, bad options, no half done work after them.
+
+commands=(build check-fresh demo fetch-data patch run test)
+
+test_every_command_has_help() {
+    local command
+    for command in "${commands[@]}"; do
+        run 0 "scripts/$command" --help
+        prints "Usage: scripts/$command"
+    done
+    absent build
+}
+
+test_unknown_options_are_one_line() {
+    local command
+    for command in "${commands[@]}"; do
+        run 2 "scripts/$command" --no-such-option
+        prints "no-such-option"
+        lines 1
+    done
+    absent build
+}
+
+test_jobs_must_be_a_number() {
+    local value
+    for value in 0 -1 two 99999 ''; do
+        run 2 scripts/build --jobs "$value"
+        lines 1
+    done
+}
+
+test_unknown_suites() {
+    run 2 scripts/test --only none
+    run 2 scripts/check-fresh woody
+    prints bookworm
+}
+
+test_patch_needs_an_action() {
+    run 2 scripts/patch
+    run 2 scripts/patch export
+    run 2 scripts/patch refresh now
+}
+
+test_run_needs_a_command() {
+    run 2 scripts/run
+}
+
+test_run_without_a_build() {
+    run 1 scripts/run true
+    prints "scripts/build"
+    run 1 scripts/run --stock true
+    prints "scripts/build --stock"
+}
+
+# A prefix in which there is no Mesa: if any driver answers, it is another one.
+test_run_refuses_another_driver() {
+    mkdir -p "$project/build/prefix/lib/x"
+    touch "$project/build/prefix/.complete" "$project/build/prefix/lib/x/libOSMesa.so"
+    run 1 scripts/run touch "$work/started"
+    prints "driver"
+    [ ! -e "$work/started" ]
+}
+
+test_check_fresh_needs_root() {
+    [ "$EUID" -eq 0 ] || skip "is run as root to become another user"
+    run 1 setpriv --reuid=65534 --regid=65534 --clear-groups scripts/check-fresh bookworm
+    prints "needs root"
+}

@@ -1,0 +1,146 @@
+# shellcheck shell=bash
+# build/mesa and mesa-patches: patching, editing, going back and forth
+
+tree_commands='. scripts/lib/common.sh; . scripts/lib/packages.sh; . scripts/lib/source.sh
+    . scripts/lib/tree.sh; prepare_tree'
+
+prepare() { # STATUS
+    run "$1" bash -c "$tree_commands" scripts/build
+}
+
+in_tree() { git -C "$project/build/mesa" -c user.name=a -c user.email=a@localhost "$@"; }
+
+# A hook that changes the word `three` of src/a.c, and an overlay file
+make_patches() {
+    prepare 0
+    sed -i 's/three/drei/' "$project/build/mesa/src/a.c"
+    in_tree commit -qam 'a: count in German'
+    mkdir -p "$project/mesa-patches/overlay/src/new"
+    echo new >"$project/mesa-patches/overlay/src/new/n.c"
+    run 0 scripts/patch refresh
+    [ -f "$project/mesa-patches/hooks/0001-a-count-in-German.patch" ]
+}
+
+test_patched_tree() {
+    make_patches
+    rm -rf "$project/build"
+    prepare 0
+    grep -q drei "$project/build/mesa/src/a.c"
+    [ "$(readlink "$project/build/mesa/src/new/n.c")" = ../../../../mesa-patches/overlay/src/new/n.c ]
+    [ -z "$(in_tree status --porcelain)" ]
+    no_temporaries
+}
+
+test_only_changed_files_are_touched() {
+    make_patches
+    touch -d '2001-01-01' "$project"/build/mesa/src/*.c
+    sed -i 's/^+drei/+troi/' "$project"/mesa-patches/hooks/0001-*.patch
+    prepare 0
+    grep -q troi "$project/build/mesa/src/a.c"
+    [ "$(date -r "$project/build/mesa/src/b.c" +%Y)" = 2001 ]
+}
+
+test_overlay_files_come_and_go() {
+    make_patches
+    mkdir -p "$project/mesa-patches/overlay/src/new"
+    mv "$project/mesa-patches/overlay/src/new/n.c" "$project/mesa-patches/overlay/src/new/m.c"
+    prepare 0
+    [ -e "$project/build/mesa/src/new/m.c" ]
+    absent build/mesa/src/new/n.c
+    [ ! -L "$project/build/mesa/src/new/n.c" ]
+    [ -z "$(in_tree status --porcelain)" ]
+}
+
+test_hook_that_does_not_apply() {
+    make_patches
+    sed -i 's/^-three/-tree/' "$project"/mesa-patches/hooks/0001-*.patch
+    prepare 1
+    prints "does not apply"
+    grep -q drei "$project/build/mesa/src/a.c"
+    no_temporaries
+}
+
+test_context_must_match_exactly() {
+    make_patches
+    sed -i 's/^ two/ zwei/' "$project"/mesa-patches/hooks/0001-*.patch
+    prepare 1
+    prints "does not apply"
+}
+
+test_edits_are_not_lost() {
+    make_patches
+    echo edited >>"$project/build/mesa/src/b.c"
+    echo other >"$project/mesa-patches/overlay/src/new/other.c"
+    prepare 1
+    prints "scripts/patch refresh"
+    grep -q edited "$project/build/mesa/src/b.c"
+    in_tree commit -qam 'b: edit'
+    prepare 1
+    prints "commits of your own"
+    run 0 scripts/patch refresh
+    prepare 0
+    grep -q edited "$project/build/mesa/src/b.c"
+}
+
+test_refresh_wants_commits() {
+    make_patches
+    echo edited >>"$project/build/mesa/src/b.c"
+    run 1 scripts/patch refresh
+    prints "not committed"
+}
+
+test_refresh_keeps_new_files_out_of_hooks() {
+    make_patches
+    echo c >"$project/build/mesa/src/c.c"
+    in_tree add src/c.c
+    in_tree commit -qm 'c: add'
+    run 1 scripts/patch refresh
+    prints "src/c.c"
+    in_tree reset -q HEAD~
+    run 0 scripts/patch refresh
+    [ -f "$project/mesa-patches/overlay/src/c.c" ] && [ -L "$project/build/mesa/src/c.c" ]
+}
+
+# An editor that writes a new file and renames it replaces the link.
+test_replaced_links_are_copied_back() {
+    make_patches
+    echo better >"$work/n.c"
+    mv -f "$work/n.c" "$project/build/mesa/src/new/n.c"
+    run 0 scripts/patch refresh
+    grep -q better "$project/mesa-patches/overlay/src/new/n.c"
+    [ -L "$project/build/mesa/src/new/n.c" ]
+}
+
+test_refresh_is_stable() {
+    make_patches
+    cp -r "$project/mesa-patches" "$work/before"
+    run 0 scripts/patch refresh
+    diff -r "$work/before" "$project/mesa-patches"
+    rm -rf "$project/build"
+    prepare 0
+    run 0 scripts/patch refresh
+    diff -r "$work/before" "$project/mesa-patches"
+}
+
+test_export_applies_to_the_release() {
+    make_patches
+    run 0 scripts/patch export "$work/series"
+    run 0 scripts/patch export "$work/series"
+    [ "$(ls "$work/series")" = "0001-mesa-add-the-files-of-the-k-buffer-extensions.patch
+0002-a-count-in-German.patch" ]
+    git init -q "$work/mesa-0"
+    git -C "$work/mesa-0" add -A
+    git -C "$work/mesa-0" -c user.name=a -c user.email=a@localhost commit -qm release
+    git -C "$work/mesa-0" -c user.name=a -c user.email=a@localhost am -q "$work"/series/*.patch
+    grep -q drei "$work/mesa-0/src/a.c"
+    grep -q new "$work/mesa-0/src/new/n.c"
+    [ ! -L "$work/mesa-0/src/new/n.c" ]
+}
+
+test_export_leaves_other_files_alone() {
+    mkdir "$work/series"
+    echo mine >"$work/series/notes.txt"
+    run 1 scripts/patch export "$work/series"
+    prints "notes.txt"
+    grep -q mine "$work/series/notes.txt"
+}
