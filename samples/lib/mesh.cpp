@@ -99,7 +99,7 @@ static void append_knot(Mesh &mesh, float tube_radius, float hue_shift, float al
         const float t = static_cast<float>(i) / static_cast<float>(along);
         const glm::vec3 tangent = glm::normalize(way(t + 1e-3F) - way(t - 1e-3F));
         const glm::vec3 side = glm::normalize(glm::cross(tangent, glm::vec3(0.0F, 0.0F, 1.0F)));
-        const glm::vec3 up = glm::cross(side, tangent);
+        const glm::vec3 up = glm::cross(tangent, side);
         for (int j = 0; j <= around; ++j) {
             const float angle = tau * static_cast<float>(j) / static_cast<float>(around);
             const glm::vec3 normal = std::cos(angle) * side + std::sin(angle) * up;
@@ -134,7 +134,7 @@ void append_sphere(Mesh &mesh, glm::vec3 center, float radius, glm::vec4 color, 
             const float turn =
                 glm::two_pi<float>() * static_cast<float>(j) / static_cast<float>(slices);
             const glm::vec3 normal(std::sin(polar) * std::cos(turn), std::cos(polar),
-                                   -std::sin(polar) * std::sin(turn));
+                                   std::sin(polar) * std::sin(turn));
             mesh.positions.push_back(center + radius * normal);
             mesh.normals.push_back(normal);
             mesh.colors.push_back(color);

@@ -9,12 +9,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <span>
 
 namespace kb
 {
 
-/// What Assimp's own processing would trip over: it trusts the indices of the file.
+/// What Assimp's readers would not survive: of a PLY file whose header is cut off they would read
+/// the end forever.
+static Status check_file(const std::filesystem::path &path)
+{
+    std::error_code code;
+    if (!std::filesystem::exists(path, code))
+        return Error{"no such file"};
+    if (std::filesystem::is_directory(path, code))
+        return Error{"it is a directory"};
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return Error{"it cannot be opened"};
+    std::string line;
+    if (!std::getline(file, line))
+        return Error{"it is empty"};
+    if (line.starts_with("ply")) {
+        while (!line.starts_with("end_header")) {
+            if (!std::getline(file, line))
+                return Error{"its header has no end"};
+        }
+    }
+    return ok;
+}
+
+/// What Assimp's own processing would trip over: it trusts the faces of the file.
 static Status check_raw_mesh(const aiMesh &mesh)
 {
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
@@ -22,8 +47,12 @@ static Status check_raw_mesh(const aiMesh &mesh)
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
             return Error{fmt::format("vertex {} is not finite", i)};
     }
+    if (mesh.mNumFaces == 0)
+        return Error{"it has no triangles"};
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
         const aiFace &face = mesh.mFaces[i];
+        if (face.mNumIndices == 0)
+            return Error{fmt::format("face {} has no vertices", i)};
         for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
             if (index >= mesh.mNumVertices)
                 return Error{fmt::format("face {} has index {}, but there are {} vertices", i,
@@ -72,12 +101,8 @@ Result<Mesh> load_mesh(const std::filesystem::path &path)
         return Error{fmt::format("cannot read the mesh {}: {}", path.string(), line)};
     };
 
-    std::error_code code;
-    if (!std::filesystem::exists(path, code))
-        return fail("no such file");
-    if (std::filesystem::is_directory(path, code))
-        return fail("it is a directory");
-
+    if (auto checked = check_file(path); !checked)
+        return fail(checked.error().message);
     Assimp::Importer importer;
     const aiScene *scene = importer.ReadFile(path.string(), 0);
     if (!scene)

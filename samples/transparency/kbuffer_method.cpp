@@ -24,9 +24,9 @@ glm::vec4 empty_entry(EntryLayout layout)
 }
 
 constexpr const char *unpack_declarations = R"(
-vec4 unpack(float packed)
+vec4 unpack(float value)
 {
-    uint bits = floatBitsToUint(packed);
+    uint bits = floatBitsToUint(value);
     return vec4(uvec4(bits, bits >> 8u, bits >> 16u, bits >> 24u) & 255u) / 255.0;
 }
 )";
@@ -58,9 +58,9 @@ std::string sampler_declarations(int attachments)
     return code;
 }
 
-glm::vec4 unpack(float packed)
+glm::vec4 unpack(float value)
 {
-    const auto bits = std::bit_cast<std::uint32_t>(packed);
+    const auto bits = std::bit_cast<std::uint32_t>(value);
     return glm::vec4(bits & 255U, bits >> 8U & 255U, bits >> 16U & 255U, bits >> 24U) / 255.0F;
 }
 
