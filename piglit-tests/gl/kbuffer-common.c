@@ -99,11 +99,23 @@ kb_entries(const struct kb *kb)
 	return kb->attachments * MAX2(kb->layers, 1);
 }
 
-/** Upload width * height * 4 floats to an entry. */
-static void
-upload(const struct kb *kb, int entry, const void *pixels)
+/** Bind a color texture of the framebuffer; returns what was bound. */
+static GLuint
+bind(const struct kb *kb, GLuint tex)
 {
-	glBindTexture(kb->target, kb->tex[entry % kb->attachments]);
+	GLint bound;
+
+	glGetIntegerv(kb->layers ? GL_TEXTURE_BINDING_2D_ARRAY :
+		      GL_TEXTURE_BINDING_2D, &bound);
+	glBindTexture(kb->target, tex);
+	return bound;
+}
+
+void
+kb_upload(const struct kb *kb, int entry, const void *pixels)
+{
+	GLuint bound = bind(kb, kb->tex[entry % kb->attachments]);
+
 	if (kb->layers)
 		glTexSubImage3D(kb->target, 0, 0, 0, entry / kb->attachments,
 				kb->width, kb->height, 1, GL_RGBA, GL_FLOAT,
@@ -111,7 +123,7 @@ upload(const struct kb *kb, int entry, const void *pixels)
 	else
 		glTexSubImage2D(kb->target, 0, 0, 0, kb->width, kb->height,
 				GL_RGBA, GL_FLOAT, pixels);
-	glBindTexture(kb->target, 0);
+	bind(kb, bound);
 }
 
 void
@@ -122,7 +134,7 @@ kb_fill_bits(const struct kb *kb, int entry, const uint32_t bits[4])
 
 	for (int i = 0; i < n; i++)
 		memcpy(pixels + 4 * i, bits, 16);
-	upload(kb, entry, pixels);
+	kb_upload(kb, entry, pixels);
 	free(pixels);
 }
 
@@ -141,10 +153,10 @@ kb_read(const struct kb *kb, int entry)
 {
 	const size_t layer_size = kb->width * kb->height * 4;
 	float *all = malloc(layer_size * MAX2(kb->layers, 1) * sizeof(float));
+	GLuint bound = bind(kb, kb->tex[entry % kb->attachments]);
 
-	glBindTexture(kb->target, kb->tex[entry % kb->attachments]);
 	glGetTexImage(kb->target, 0, GL_RGBA, GL_FLOAT, all);
-	glBindTexture(kb->target, 0);
+	bind(kb, bound);
 	memmove(all, all + layer_size * (entry / kb->attachments),
 		layer_size * sizeof(float));
 	return all;
@@ -295,6 +307,32 @@ kb_fragment_value(float r, float g, float b, float a)
 	glProgramLocalParameter4fARB(GL_FRAGMENT_PROGRAM_ARB, 0, r, g, b, a);
 	glEnable(GL_FRAGMENT_PROGRAM_ARB);
 	glClampColor(GL_CLAMP_FRAGMENT_COLOR, GL_FALSE);
+}
+
+GLuint
+kb_use_glsl(const char *vs, const char *gs, const char *fs)
+{
+	GLuint program = glCreateProgram();
+	const char *const sources[3] = { vs, gs, fs };
+	static const GLenum stages[3] = {
+		GL_VERTEX_SHADER, GL_GEOMETRY_SHADER, GL_FRAGMENT_SHADER
+	};
+
+	for (int i = 0; i < 3; i++) {
+		if (sources[i]) {
+			GLuint shader = piglit_compile_shader_text(stages[i],
+								   sources[i]);
+			glAttachShader(program, shader);
+			glDeleteShader(shader);
+		}
+	}
+	glLinkProgram(program);
+	if (!piglit_link_check_status(program))
+		piglit_report_result(PIGLIT_FAIL);
+	glUseProgram(program);
+	/* It goes when it is no longer in use. */
+	glDeleteProgram(program);
+	return program;
 }
 
 void

@@ -74,6 +74,10 @@ kb_fill(const struct kb *kb, int entry, float r, float g, float b, float a);
 void
 kb_fill_bits(const struct kb *kb, int entry, const uint32_t bits[4]);
 
+/** Upload width * height * 4 floats to an entry. */
+void
+kb_upload(const struct kb *kb, int entry, const void *pixels);
+
 /** width * height * 4 floats of an entry; free() it. */
 float *
 kb_read(const struct kb *kb, int entry);
@@ -118,6 +122,10 @@ kb_fragment_values(const float (*values)[4], int n);
 /** The same with one value, the only color output. */
 void
 kb_fragment_value(float r, float g, float b, float a);
+
+/** Link and use a GLSL program; GL_GEOMETRY_SHADER if \p gs is not NULL. */
+GLuint
+kb_use_glsl(const char *vs, const char *gs, const char *fs);
 
 /** Draw a rectangle in pixels of the viewport at a window z. */
 void

@@ -286,6 +286,7 @@ integer(void *data)
 	glClearBufferiv(GL_COLOR, 1, fill);
 	/* The integer buffer is not named by the program, but is there. */
 	pass = check_refused(&kb, GL_INVALID_OPERATION);
+	glBindTexture(GL_TEXTURE_2D, tex);
 	glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA_INTEGER, GL_INT, got);
 	for (int i = 0; i < 8 * 8; i++)
 		pass = got[4 * i] == 9 && pass;
