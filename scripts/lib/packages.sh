@@ -1,6 +1,10 @@
 # The distribution's packages: which are missing, and their installation. To be sourced after common.sh.
 # shellcheck shell=bash
 
+# What apt, dpkg and git say is read here; and ccache keeps the results of each language apart.
+export LANG=C.UTF-8
+unset LANGUAGE "${!LC_@}"
+
 distribution_id=unknown
 distribution_suite=unknown
 distribution_name=unknown
