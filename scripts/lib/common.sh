@@ -122,8 +122,9 @@ logged() { # WHAT LOG COMMAND...: quiet unless it fails
     "$@" >"$log" 2>&1 9>&- || die_with_log "$what" "$log"
 }
 
-# Reads ninja's output: one line that moves on a terminal, else a line every tenth of the way (and
-# after each half minute), so that a log stays readable and still shows that something happens.
+# Reads ninja's output: one line that moves on a terminal, else a line every tenth of the way, but
+# not within two seconds of the last, and after each half minute: a log stays readable and still
+# shows that something happens.
 show_progress() { # WHAT
     local line step total shown=-1 start=$SECONDS last=$SECONDS width terminal=
     [ -t 1 ] && terminal=yes
@@ -134,7 +135,8 @@ show_progress() { # WHAT
         if [ -n "$terminal" ]; then
             line="    $1: $step/$total, $((SECONDS - start)) s  ${BASH_REMATCH[3]}"
             printf '\r\033[K%s' "${line:0:$((width - 1))}"
-        elif [ $((step * 10 / total)) -gt $shown ] || [ $((SECONDS - last)) -ge 30 ]; then
+        elif { [ $((step * 10 / total)) -gt $shown ] && [ $((SECONDS - last)) -ge 2 ]; } ||
+            [ $((SECONDS - last)) -ge 30 ] || [ "$step" -eq "$total" ]; then
             shown=$((step * 10 / total)) last=$SECONDS
             note "$1: $step/$total, $((SECONDS - start)) s"
         fi
