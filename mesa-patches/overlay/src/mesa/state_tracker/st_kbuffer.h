@@ -40,13 +40,19 @@ void
 st_kbuffer_release_object(struct st_context *st,
                           struct st_kbuffer_object **object);
 
-/** The object that draws must use, NULL when the stage is off. */
+/**
+ * The object that draws must use, NULL when the stage is off.
+ *
+ * Draw validation has looked at the same, but not in contexts without errors,
+ * nor when another context has specified a new program string since.  Drivers
+ * rely on every entry being there.
+ */
 static inline struct st_kbuffer_object *
 st_kbuffer_object(const struct gl_context *ctx)
 {
    struct gl_program *prog = _mesa_kbuffer_program(ctx);
 
-   return prog ? prog->kbuffer : NULL;
+   return prog && _mesa_kbuffer_valid_to_render(ctx) ? prog->kbuffer : NULL;
 }
 
 /**

@@ -417,8 +417,14 @@ encode_channel(const struct lp_kbuf_pixels *pixels,
    switch (chan->type) {
    case UTIL_FORMAT_TYPE_UNSIGNED:
       value = lp_build_clamp_zero_one_nanzero(&bld, value);
-      return lp_build_clamped_float_to_unsigned_norm(gallivm, type,
-                                                     chan->size, value);
+      if (chan->size > 16) {
+         return lp_build_clamped_float_to_unsigned_norm(gallivm, type,
+                                                        chan->size, value);
+      }
+      value = lp_build_mul(&bld, value,
+                           lp_build_const_vec(gallivm, type,
+                                              (1u << chan->size) - 1));
+      return lp_build_iround(&bld, value);
 
    case UTIL_FORMAT_TYPE_SIGNED: {
       const uint32_t max = (1u << (chan->size - 1)) - 1;

@@ -270,7 +270,9 @@ lp_kbuf_update_scene(struct lp_setup_context *setup, bool new_scene)
 
    setup->dirty |= LP_SETUP_NEW_FS;
    setup->fs.current.kbuf = NULL;
-   if (lp->blend->kbuffer_mode == PIPE_KBUFFER_OFF || !kbuf->program)
+
+   /* A query can begin a scene before any state is bound. */
+   if (!lp->blend || !lp->blend->kbuffer_mode || !kbuf->program)
       return true;
 
    struct lp_jit_kbuf *stored =

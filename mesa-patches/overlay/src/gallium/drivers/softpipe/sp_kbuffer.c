@@ -165,25 +165,18 @@ softpipe_create_kbuffer_state(struct pipe_context *pipe,
 {
    struct sp_kbuffer_program *prog = CALLOC_STRUCT(sp_kbuffer_program);
    struct lower_state state = { .prog = prog };
-
-   if (!prog)
-      return NULL;
+   nir_shader *nir = templ->ir.nir;
 
    assert(templ->type == PIPE_SHADER_IR_NIR);
-   nir_shader *nir = nir_shader_clone(NULL, templ->ir.nir);
+
+   if (!prog) {
+      ralloc_free(nir);
+      return NULL;
+   }
 
    if (sp_debug & SP_DBG_FS)
       nir_print_shader(nir, stderr);
 
-   /* TGSI has no exact equivalent of these two. */
-   nir_shader_compiler_options *options =
-      ralloc(nir, nir_shader_compiler_options);
-   *options = *nir->options;
-   options->lower_pack_unorm_4x8 = true;
-   options->lower_unpack_unorm_4x8 = true;
-   nir->options = options;
-
-   pipe_reference_init(&prog->reference, 1);
    prog->origin_upper_left = nir->info.fs.origin_upper_left;
    prog->pixel_center_integer = nir->info.fs.pixel_center_integer;
    lower_to_inputs_and_outputs(nir, &state);
@@ -202,27 +195,13 @@ softpipe_create_kbuffer_state(struct pipe_context *pipe,
    return prog;
 }
 
-/** Let *ptr refer to prog, which may be NULL. */
-static void
-program_reference(struct sp_kbuffer_program **ptr,
-                  struct sp_kbuffer_program *prog)
-{
-   struct sp_kbuffer_program *old = *ptr;
-
-   if (pipe_reference(old ? &old->reference : NULL,
-                      prog ? &prog->reference : NULL)) {
-      tgsi_free_tokens(old->tokens);
-      FREE(old);
-   }
-   *ptr = prog;
-}
-
 static void
 softpipe_delete_kbuffer_state(struct pipe_context *pipe, void *program)
 {
    struct sp_kbuffer_program *prog = program;
 
-   program_reference(&prog, NULL);
+   tgsi_free_tokens(prog->tokens);
+   FREE(prog);
 }
 
 static bool
@@ -249,7 +228,7 @@ set_program(struct sp_kbuffer *kb, struct sp_kbuffer_program *prog)
    if (prog == kb->program)
       return;
 
-   program_reference(&kb->program, prog);
+   kb->program = prog;
    if (prog) {
       tgsi_exec_machine_bind_shader(kb->machine, prog->tokens,
                                     (struct tgsi_sampler *)kb->sampler,
@@ -364,7 +343,6 @@ sp_destroy_kbuffer(struct softpipe_context *sp)
          FREE(kb->sampler->sp_sampler[i]);
    }
 
-   program_reference(&kb->program, NULL);
    FREE(kb->constants);
    FREE(kb->sampler);
    tgsi_exec_machine_destroy(kb->machine);

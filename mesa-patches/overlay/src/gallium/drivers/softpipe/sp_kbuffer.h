@@ -35,15 +35,11 @@ struct sp_kbuffer_reg
 
 /**
  * A k-buffer program, translated to TGSI.  What it reads are shader inputs,
- * what it writes are shader outputs.
+ * what it writes are shader outputs.  It never changes, so that contexts can
+ * share it.
  */
 struct sp_kbuffer_program
 {
-   /* Held by the creator and by every context that has it bound: another
-    * context may delete it.
-    */
-   struct pipe_reference reference;
-
    const struct tgsi_token *tokens;
 
    int8_t position;                    /**< input register, -1: not read */

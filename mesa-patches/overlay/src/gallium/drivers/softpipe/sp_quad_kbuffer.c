@@ -47,6 +47,7 @@ struct kbuffer_access
     * write must not change by being unpacked and packed again.
     */
    uint8_t write_bits[MAX_PIXEL_BYTES];
+   bool write_all_bits;
 };
 
 struct kbuffer_stage
@@ -137,6 +138,10 @@ setup_access(struct softpipe_context *sp, const struct sp_kbuffer_reg *reg,
    } else {
       component_bits(access->format, access->writemask, access->write_bits);
    }
+
+   access->write_all_bits = true;
+   for (unsigned i = 0; i < access->pixel_bytes; i++)
+      access->write_all_bits &= access->write_bits[i] == 0xff;
 }
 
 static uint8_t *
@@ -212,6 +217,11 @@ store_entry(const struct softpipe_context *sp,
       uint8_t *dst = pixel_address(access, quad->input.x0 + (j & 1),
                                    quad->input.y0 + (j >> 1));
 
+      if (access->write_all_bits) {
+         memcpy(dst, src, access->pixel_bytes);
+         continue;
+      }
+
       for (unsigned i = 0; i < access->pixel_bytes; i++) {
          dst[i] = (dst[i] & ~access->write_bits[i]) |
                   (src[i] & access->write_bits[i]);
@@ -219,11 +229,22 @@ store_entry(const struct softpipe_context *sp,
    }
 }
 
+/** Color output n of the fragment shader; 0, 0, 0, 1 if it writes none. */
 static void
-load_color(const struct softpipe_context *sp, float (*color)[TGSI_QUAD_SIZE],
-           struct tgsi_exec_vector *input)
+load_color(const struct kbuffer_stage *stage, const struct quad_header *quad,
+           unsigned n, struct tgsi_exec_vector *input)
 {
-   const bool clamp = sp->rasterizer->clamp_fragment_color;
+   const bool clamp = stage->tail.softpipe->rasterizer->clamp_fragment_color;
+
+   if (stage->color[n] < 0) {
+      for (unsigned j = 0; j < TGSI_QUAD_SIZE; j++) {
+         for (unsigned c = 0; c < TGSI_NUM_CHANNELS; c++)
+            input->xyzw[c].f[j] = c == 3;
+      }
+      return;
+   }
+
+   const float (*color)[TGSI_QUAD_SIZE] = quad->output.color[stage->color[n]];
 
    for (unsigned c = 0; c < TGSI_NUM_CHANNELS; c++) {
       if (clamp) {
@@ -257,7 +278,6 @@ load_depth(const struct kbuffer_stage *stage, const struct quad_header *quad,
            float z[TGSI_QUAD_SIZE])
 {
    const struct softpipe_context *sp = stage->tail.softpipe;
-   const struct pipe_rasterizer_state *rast = sp->rasterizer;
    float min = 0.0f, max = 1.0f;
 
    if (sp->fs_variant->info.writes_z && !sp->early_depth)
@@ -265,7 +285,7 @@ load_depth(const struct kbuffer_stage *stage, const struct quad_header *quad,
    else
       eval_pos_coef(quad, 2, z);
 
-   if (!rast->depth_clip_near) {
+   if (!sp->rasterizer->depth_clip_near) {
       const struct pipe_viewport_state *vp =
          &sp->viewports[stage->viewport_index];
       const float near_val = vp->translate[2] - vp->scale[2];
@@ -273,8 +293,6 @@ load_depth(const struct kbuffer_stage *stage, const struct quad_header *quad,
 
       min = MIN2(near_val, far_val);
       max = MAX2(near_val, far_val);
-   } else if (rast->unclamped_fragment_depth_values) {
-      return;
    }
 
    for (unsigned j = 0; j < TGSI_QUAD_SIZE; j++)
@@ -304,7 +322,7 @@ load_position(const struct kbuffer_stage *stage,
 }
 
 static void
-load_inputs(const struct kbuffer_stage *stage, struct quad_header *quad)
+load_inputs(const struct kbuffer_stage *stage, const struct quad_header *quad)
 {
    const struct softpipe_context *sp = stage->tail.softpipe;
    const struct sp_kbuffer_program *prog = sp->kbuffer.program;
@@ -314,15 +332,8 @@ load_inputs(const struct kbuffer_stage *stage, struct quad_header *quad)
       load_position(stage, quad, &inputs[prog->position]);
 
    for (unsigned n = 0; n < ARRAY_SIZE(prog->color); n++) {
-      if (prog->color[n] < 0)
-         continue;
-
-      if (stage->color[n] >= 0) {
-         load_color(sp, quad->output.color[stage->color[n]],
-                    &inputs[prog->color[n]]);
-      } else {
-         memset(&inputs[prog->color[n]], 0, sizeof(inputs[0]));
-      }
+      if (prog->color[n] >= 0)
+         load_color(stage, quad, n, &inputs[prog->color[n]]);
    }
 
    for (unsigned i = 0; i < prog->num_reads; i++)

@@ -24,6 +24,10 @@
  * An entry or component that is not stored keeps its bits, as do all entries
  * of a fragment that the program discards.  Uniforms are UBO 0, textures and
  * samplers are numbered as in pipe_kbuffer_state.
+ *
+ * create_kbuffer_state takes the NIR over, also when it fails.  Any context of
+ * the screen may set and delete the program; it stays until no context has it
+ * set.
  */
 
 #ifndef P_KBUFFER_H
