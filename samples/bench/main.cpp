@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+//
+// Measures transparency methods side by side: the methods of stock Mesa and those of the patched
+// one, each driver in a process of its own, taking turns frame by frame.
+
+#include "options.hpp"
+#include "report.hpp"
+#include "study.hpp"
+#include "worker.hpp"
+#include "worker_process.hpp"
+
+#include <fmt/format.h>
+
+int main(int argc, char **argv)
+{
+    CLI::App app{"Milliseconds, memory and error of transparency methods, measured side by side on "
+                 "stock Mesa and on Mesa with the k-buffer extensions.",
+                 "kbuffer-bench"};
+    kb::bench::Options options;
+    if (const auto status = kb::bench::parse_options(app, options, argc, argv))
+        return *status;
+    if (options.worker)
+        return kb::bench::work();
+
+    std::vector<std::filesystem::path> outputs{options.out};
+    if (!options.pictures.empty())
+        outputs.push_back(options.pictures / "picture.png");
+    for (const auto &output : outputs)
+        if (const auto writable = kb::bench::prepare_output(output); !writable)
+            return kb::fail(app, writable.error(), kb::exit_bad_input);
+    try {
+        const kb::bench::Study study = kb::bench::run_study(options);
+        fmt::print("{}", kb::bench::to_table(study.rows));
+        const auto document = kb::bench::to_json(study.machine, study.rows);
+        if (const auto written = kb::bench::write_json(options.out, document); !written)
+            return kb::fail(app, written.error(), kb::exit_bad_input);
+        fmt::print("Results: {}\n", options.out.string());
+    } catch (const kb::bench::BadInput &error) {
+        return kb::fail(app, {error.what()}, kb::exit_bad_input);
+    } catch (const std::exception &error) {
+        return kb::fail(app, {error.what()}, kb::exit_lacking);
+    }
+    return 0;
+}

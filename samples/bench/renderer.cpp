@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+
+#include "renderer.hpp"
+
+#include <stdexcept>
+
+namespace kb::bench
+{
+
+std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method, Size size, int k)
+{
+    if (method == "zbuffer")
+        return make_zbuffer(gl, size);
+    if (method == "classic-peeling")
+        return make_classic_peeling(gl, size, k);
+    if (method == "fbfetch")
+        return make_fbfetch(gl, size, k);
+    if (method == "kbuffer-program")
+        return make_kbuffer_program(gl, size, k);
+    throw std::invalid_argument("no method is called " + method);
+}
+
+} // namespace kb::bench

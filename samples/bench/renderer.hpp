@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// One method of the study with its storage: draws whole frames on request.
+#pragma once
+
+#include "camera.hpp"
+#include "gl_scene.hpp"
+
+#include <memory>
+#include <string>
+
+namespace kb::bench
+{
+
+class Renderer
+{
+public:
+    virtual ~Renderer() = default;
+    Renderer(const Renderer &) = delete;
+    Renderer &operator=(const Renderer &) = delete;
+
+    /// Clears, draws the geometry as often as the method needs, and resolves into the framebuffer.
+    virtual void draw(const GlScene &scene, GLuint target) = 0;
+
+    /// Number of passes over the geometry.
+    virtual int passes() const { return 1; }
+    /// Of what the method stores beside the final image.
+    virtual int bytes_per_pixel() const = 0;
+
+protected:
+    Renderer() = default;
+};
+
+std::unique_ptr<Renderer> make_zbuffer(const Gl &gl, Size size);
+std::unique_ptr<Renderer> make_classic_peeling(const Gl &gl, Size size, int k);
+std::unique_ptr<Renderer> make_fbfetch(const Gl &gl, Size size, int k);
+std::unique_ptr<Renderer> make_kbuffer_program(const Gl &gl, Size size, int k);
+
+/// By the method's name in methods.hpp.
+std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method, Size size, int k);
+
+} // namespace kb::bench

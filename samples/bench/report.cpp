@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+
+#include "report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <unistd.h>
+
+namespace kb::bench
+{
+
+nlohmann::json to_json(const nlohmann::json &machine, std::span<const Row> rows)
+{
+    nlohmann::json results = nlohmann::json::array();
+    for (const Row &row : rows)
+        results.push_back({{"scene", row.scene},
+                           {"method", row.method},
+                           {"driver", row.driver},
+                           {"k", row.k},
+                           {"passes", row.passes},
+                           {"triangles", row.triangles},
+                           {"fragments", row.fragments},
+                           {"ms_median", row.ms.median},
+                           {"ms_p5", row.ms.p5},
+                           {"ms_p95", row.ms.p95},
+                           {"bytes_per_pixel", row.bytes_per_pixel},
+                           {"err_max", row.error.max},
+                           {"err_rmse", row.error.rmse},
+                           {"err_share", row.error.share}});
+    return {{"machine", machine}, {"results", results}};
+}
+
+/// The median as a ratio to that of another method on the same scene, or "-" without such a row.
+static std::string ratio(std::span<const Row> rows, const Row &row, std::string_view base, int k)
+{
+    const auto found = std::ranges::find_if(rows, [&](const Row &other) {
+        return other.scene == row.scene && other.method == base && other.k == k;
+    });
+    return found == rows.end() ? "-" : fmt::format("{:.2f}", row.ms.median / found->ms.median);
+}
+
+std::string to_table(std::span<const Row> rows)
+{
+    std::string table = fmt::format(
+        "{:<8} {:<16} {:>3} {:>6} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "scene",
+        "method", "k", "passes", "ms", "p5", "p95", "/zbuffer", "/fbfetch", "bytes/px", "err_max",
+        "err_rmse", "err_share");
+    for (const Row &row : rows)
+        table +=
+            fmt::format("{:<8} {:<16} {:>3} {:>6} {:>9.2f} {:>9.2f} {:>9.2f} {:>8} {:>8} "
+                        "{:>8} {:>8.5f} {:>9.6f} {:>9.6f}\n",
+                        row.scene, row.method, row.k == 0 ? "-" : std::to_string(row.k), row.passes,
+                        row.ms.median, row.ms.p5, row.ms.p95, ratio(rows, row, "zbuffer", 0),
+                        row.method == "kbuffer-program" ? ratio(rows, row, "fbfetch", row.k) : "-",
+                        row.bytes_per_pixel, row.error.max, row.error.rmse, row.error.share);
+    return table;
+}
+
+Status prepare_output(const std::filesystem::path &path)
+{
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error))
+        return Error{fmt::format("cannot write {}: it is a directory", path.string())};
+    std::filesystem::create_directories(folder, error);
+    if (error || access(folder.c_str(), W_OK) != 0)
+        return Error{fmt::format("cannot write {}: {}", path.string(),
+                                 error ? error.message() : std::strerror(errno))};
+    return ok;
+}
+
+Status write_json(const std::filesystem::path &path, const nlohmann::json &document)
+{
+    const std::string text = document.dump(2) + "\n";
+    return write_file(path, std::as_bytes(std::span(text)));
+}
+
+} // namespace kb::bench

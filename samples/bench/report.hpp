@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+//
+// Results as JSON and as a table to read.
+
+#pragma once
+
+#include "image.hpp"
+#include "timing.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace kb::bench
+{
+
+struct Row {
+    std::string scene;
+    std::string method;
+    std::string driver;
+    int k = 0;
+    int passes = 1; ///< Over the geometry.
+    std::uint64_t triangles = 0;
+    std::uint64_t fragments = 0; ///< Of one pass over the geometry without a depth test.
+    Spread ms;
+    int bytes_per_pixel = 0;
+    Difference error; ///< Against the exact image of the same k.
+};
+
+nlohmann::json to_json(const nlohmann::json &machine, std::span<const Row> rows);
+
+/// Each time also as a ratio to z-buffering, and that of a k-buffer program as a ratio to
+/// framebuffer fetch with the same k.
+std::string to_table(std::span<const Row> rows);
+
+/// Finds out before any work whether the file can be written; makes its folder.
+Status prepare_output(const std::filesystem::path &path);
+
+Status write_json(const std::filesystem::path &path, const nlohmann::json &document);
+
+} // namespace kb::bench

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// The scenes of the study. The generated ones come from fixed seeds and from arithmetic that every
+// platform does alike, so that figures of different machines are figures of the same geometry.
+
+#pragma once
+
+#include "mesh.hpp"
+
+#include <glm/mat4x4.hpp>
+
+#include <array>
+#include <filesystem>
+#include <string>
+
+namespace kb::bench
+{
+
+struct Scene {
+    Mesh mesh;
+    glm::mat4 projection{1.0F}; ///< Orthographic, stretched to the view if that is not square.
+    std::string note;           ///< What a reader of the figures must know, or empty.
+};
+
+/// In the order of the report.
+inline constexpr std::array scene_names{"dragon", "spheres", "quads"};
+
+/// 300 tessellated spheres of random place and size, nested and crossing in a ball: 1,008,000
+/// triangles.
+Scene make_spheres();
+
+/// 128 quads, each over the same half of the view, in shuffled order of depth.
+Scene make_quads();
+
+/// Colors the mesh by its normals and frames it to fill the view.
+Scene make_mesh_scene(Mesh mesh);
+
+/// The scene of that name. `dragon` is the file of the dragon's mesh: when there is none, a
+/// generated mesh of similar size takes its place and the note says so.
+Result<Scene> make_scene(const std::string &name, const std::filesystem::path &dragon);
+
+} // namespace kb::bench

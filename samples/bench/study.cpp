@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+
+#include "study.hpp"
+
+#include "gl_scene.hpp"
+#include "machine.hpp"
+#include "methods.hpp"
+#include "temporary_folder.hpp"
+#include "worker_process.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+namespace kb::bench
+{
+
+using nlohmann::json;
+
+namespace
+{
+
+template <class... Arguments>
+void progress(fmt::format_string<Arguments...> text, Arguments &&...arguments)
+{
+    fmt::print(stderr, text, std::forward<Arguments>(arguments)...);
+    std::fflush(stderr);
+}
+
+std::string label(const Run &run)
+{
+    return run.k == 0 ? run.method : fmt::format("{}-{}", run.method, run.k);
+}
+
+/// A run on the scene at hand.
+struct Active {
+    Run run;
+    WorkerProcess *worker;
+    int id; ///< The worker's number for it.
+    Row row;
+    std::vector<double> times;
+};
+
+class Runner
+{
+public:
+    explicit Runner(const Options &options)
+        : options_(options), runs_(plan_runs(options.methods, options.ks))
+    {
+        start_worker("stock", options.stock);
+        if (std::ranges::any_of(runs_, [](const Run &run) { return run.driver == "ours"; }))
+            start_worker("ours", options.ours);
+    }
+
+    Study run()
+    {
+        study_.machine = describe_machine();
+        for (const auto &[driver, name] : driver_names_)
+            study_.machine["driver_" + driver] = name;
+        study_.machine["width"] = options_.size.width;
+        study_.machine["height"] = options_.size.height;
+        study_.machine["rounds"] = options_.rounds;
+        study_.machine["scenes"] = json::object();
+        for (const std::string &scene : options_.scenes)
+            measure(scene);
+        return std::move(study_);
+    }
+
+private:
+    void start_worker(const std::string &driver, const std::filesystem::path &prefix)
+    {
+        const auto [place, added] =
+            workers_.emplace(driver, std::make_unique<WorkerProcess>(driver, prefix));
+        const json hello = place->second->ask({{"do", "hello"}});
+        // The figures are worth nothing if both are the same driver.
+        if (hello.at("kbuffer_program").get<bool>() != (driver == "ours"))
+            throw std::runtime_error(
+                fmt::format("the Mesa in {} {} GL_MESA_kbuffer_program", prefix.string(),
+                            driver == "ours" ? "lacks" : "is to be stock, but has"));
+        driver_names_[driver] = hello.at("driver").get<std::string>();
+        progress("{}: {}\n", driver, driver_names_[driver]);
+    }
+
+    void measure(const std::string &scene)
+    {
+        json about;
+        for (auto &[driver, worker] : workers_)
+            about = worker->ask({{"do", "scene"},
+                                 {"name", scene},
+                                 {"dragon", options_.dragon.string()},
+                                 {"width", options_.size.width},
+                                 {"height", options_.size.height}});
+        const auto triangles = about.at("triangles").get<std::uint64_t>();
+
+        progress("{}: {} triangles, capturing fragments for exact images\n", scene, triangles);
+        const json capture = capture_exact_images();
+        about.update(capture);
+        study_.machine["scenes"][scene] = about;
+        progress("{}: {} fragments, depth complexity {}, {} pixels covered\n", scene,
+                 capture.at("fragments").get<std::uint64_t>(),
+                 capture.at("depth_complexity").get<int>(),
+                 capture.at("covered_pixels").get<std::uint64_t>());
+
+        std::vector<Active> active;
+        for (const Run &run : runs_) {
+            WorkerProcess &worker = *workers_.at(run.driver);
+            const json made = worker.ask({{"do", "method"}, {"method", run.method}, {"k", run.k}});
+            Row row;
+            row.scene = scene;
+            row.method = run.method;
+            row.driver = run.driver;
+            row.k = run.k;
+            row.passes = made.at("passes").get<int>();
+            row.bytes_per_pixel = made.at("bytes_per_pixel").get<int>();
+            row.triangles = triangles;
+            row.fragments = capture.at("fragments").get<std::uint64_t>();
+            active.push_back({run, &worker, made.at("id").get<int>(), std::move(row), {}});
+            // Compiles its shaders too, before frames are measured.
+            active.back().row.error = error_of(active.back(), scene);
+        }
+        for (int round = 1; round <= options_.rounds; ++round) {
+            progress("\r{}: round {} of {}", scene, round, options_.rounds);
+            for (Active &one : active)
+                one.times.push_back(
+                    one.worker->ask({{"do", "frame"}, {"id", one.id}}).at("ms").get<double>());
+        }
+        progress("\n");
+        for (Active &one : active) {
+            one.row.ms = spread_of(one.times);
+            study_.rows.push_back(std::move(one.row));
+        }
+    }
+
+    std::filesystem::path exact_path(int k) const
+    {
+        return folder_.path() / fmt::format("exact-{}.pfm", k);
+    }
+
+    json capture_exact_images()
+    {
+        std::vector<int> ks{0};
+        ks.insert(ks.end(), options_.ks.begin(), options_.ks.end());
+        std::vector<std::string> paths;
+        for (const int k : ks)
+            paths.push_back(exact_path(k).string());
+        return workers_.at("stock")->ask({{"do", "capture"}, {"ks", ks}, {"paths", paths}});
+    }
+
+    Difference error_of(const Active &one, const std::string &scene) const
+    {
+        const std::filesystem::path path = folder_.path() / "image.pfm";
+        one.worker->ask({{"do", "image"}, {"id", one.id}, {"path", path.string()}});
+        const ImageRgbaF image = must(read_pfm(path));
+        if (!options_.pictures.empty()) {
+            must(write_png(options_.pictures / fmt::format("{}-{}.png", scene, label(one.run)),
+                           to_rgba8(image)));
+        }
+        // Eight-bit colors are off by 1/255 at most; as floats, by a rounding more.
+        return must(compare(image, must(read_pfm(exact_path(one.run.k))), 1.0 / 255.0 + 1e-6));
+    }
+
+    const Options &options_;
+    std::vector<Run> runs_;
+    TemporaryFolder folder_;
+    std::map<std::string, std::unique_ptr<WorkerProcess>> workers_;
+    std::map<std::string, std::string> driver_names_;
+    Study study_;
+};
+
+} // namespace
+
+Study run_study(const Options &options)
+{
+    return Runner(options).run();
+}
+
+} // namespace kb::bench
