@@ -10,6 +10,7 @@
  */
 
 #include "main/kbuffer.h"
+#include "main/blend.h"
 #include "main/context.h"
 #include "main/draw_validate.h"
 #include "main/state.h"
@@ -58,6 +59,7 @@ _mesa_enable_kbuffer(struct gl_context *ctx, GLboolean state)
 
    FLUSH_VERTICES(ctx, _NEW_PROGRAM, GL_ENABLE_BIT);
    ctx->Kbuffer.Enabled = state;
+   _mesa_update_clamp_fragment_color(ctx, ctx->DrawBuffer);
    _mesa_kbuffer_program_changed(ctx);
 }
 

@@ -28,6 +28,7 @@
 #include "tgsi/tgsi_exec.h"
 #include "tgsi/tgsi_parse.h"
 #include "util/ralloc.h"
+#include "util/u_inlines.h"
 #include "util/u_memory.h"
 
 static_assert(1 + PIPE_MAX_COLOR_BUFS + SP_MAX_KBUFFER_ENTRIES <=

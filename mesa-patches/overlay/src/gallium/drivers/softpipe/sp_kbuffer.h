@@ -14,7 +14,6 @@
 #define SP_KBUFFER_H
 
 #include "pipe/p_kbuffer.h"
-#include "util/u_inlines.h"
 
 struct quad_stage;
 struct softpipe_context;
