@@ -11,7 +11,8 @@
 #include <cmath>
 #include <cstdint>
 
-namespace {
+namespace
+{
 
 using kb::test::TempDirectory;
 
@@ -62,8 +63,8 @@ TEST(Pfm, RoundTripKeepsAllBits)
 {
     const TempDirectory directory;
     kb::ImageRgbaF image(2, 2);
-    const float values[] = {0.1F, -0.0F, 1e-40F, INFINITY, 3e38F, 1.0F, 0.25F, 2.0F,
-                            5.0F, 6.0F,  7.0F,   8.0F};
+    const float values[] = {0.1F,  -0.0F, 1e-40F, INFINITY, 3e38F, 1.0F,
+                            0.25F, 2.0F,  5.0F,   6.0F,     7.0F,  8.0F};
     for (std::size_t i = 0; i < 12; ++i)
         image.pixels[i / 3][static_cast<int>(i % 3)] = values[i];
     ASSERT_TRUE(kb::write_pfm(directory / "f.pfm", image));

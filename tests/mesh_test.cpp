@@ -9,7 +9,8 @@
 #include <cmath>
 #include <cstring>
 
-namespace {
+namespace
+{
 
 using kb::test::TempDirectory;
 
@@ -84,6 +85,26 @@ TEST(LoadMesh, ReadsPlyWithColors)
             EXPECT_NEAR(glm::distance(mesh->colors[i], glm::vec4(0, 0, 1, 0.6F)), 0.0F, 1e-6F);
         }
     }
+}
+
+TEST(LoadMesh, KeepsVerticesApartThatDifferInColorOnly)
+{
+    const TempDirectory directory;
+    const auto mesh = kb::load_mesh(directory.write(
+        "twice.ply", "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float "
+                     "y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty "
+                     "uchar blue\nproperty uchar alpha\nelement face 3\nproperty list uchar int "
+                     "vertex_indices\nend_header\n"
+                     "0 0 0 255 0 0 51\n1 0 0 255 0 0 51\n0 1 0 255 0 0 51\n"
+                     "0 0 0 0 255 0 51\n1 0 0 0 255 0 51\n0 1 0 0 255 0 51\n"
+                     "0 0 0 255 0 0 51\n1 0 0 255 0 0 51\n0 1 0 255 0 0 51\n"
+                     "3 0 1 2\n3 3 4 5\n3 6 7 8\n"));
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    ASSERT_EQ(mesh->triangle_count(), 3U);
+    EXPECT_EQ(mesh->positions.size(), 6U) << "the third triangle is the first one again";
+    EXPECT_EQ(mesh->colors[mesh->indices[0]], glm::vec4(1, 0, 0, 0.2F));
+    EXPECT_EQ(mesh->colors[mesh->indices[3]], glm::vec4(0, 1, 0, 0.2F));
+    EXPECT_EQ(mesh->colors[mesh->indices[6]], glm::vec4(1, 0, 0, 0.2F));
 }
 
 TEST(LoadMesh, ReadsObjAndStl)
@@ -169,7 +190,7 @@ TEST(LoadMesh, RefusesWhatIsMalformed)
         {"cut-buffer.gltf", gltf(2, 30)},
         {"index.gltf", gltf(3)},
         {"noise.glb", "glTF\x02\0\0\0garbage"},
-        {"unknown.xyzzy", good_ply},
+        {"unknown.xyzzy", "nothing that a reader knows"},
     };
     for (const auto &file : files) {
         SCOPED_TRACE(file.name);

@@ -9,10 +9,12 @@
 
 #include <stdlib.h>
 
-namespace kb::test {
+namespace kb::test
+{
 
 /// A directory for the files of one test, gone with it.
-class TempDirectory {
+class TempDirectory
+{
 public:
     TempDirectory()
     {

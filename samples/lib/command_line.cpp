@@ -38,6 +38,14 @@ int fail(const CLI::App &app, const Error &error, int status)
     return status;
 }
 
+std::string check_number(const std::string &text, double low, double high)
+{
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high)
+        return {};
+    return fmt::format("{} is not in the range from {} to {}", text, low, high);
+}
+
 static std::optional<int> parse_side(std::string_view text)
 {
     int side = 0;

@@ -24,6 +24,9 @@ std::optional<int> parse_command_line(CLI::App &app, int argc, const char *const
 /// Prints "program: message" on the standard error output; returns the status.
 int fail(const CLI::App &app, const Error &error, int status);
 
+/// A check for add_option: empty, or what is wrong. Unlike CLI::Range it refuses NaN.
+std::string check_number(const std::string &text, double low, double high);
+
 /// --size WxH, each side from 1 to 8192.
 CLI::Option *add_size_option(CLI::App &app, Size &size);
 

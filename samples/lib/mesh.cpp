@@ -7,8 +7,11 @@
 #include <glm/gtc/constants.hpp>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 namespace kb
 {
@@ -39,6 +42,52 @@ Status check_mesh(const Mesh &mesh)
                                  farthest - mesh.indices.begin(), *farthest,
                                  mesh.positions.size())};
     return ok;
+}
+
+/// All of a vertex, to find it again.
+using VertexKey = std::array<std::uint32_t, 10>;
+
+struct VertexKeyHash {
+    std::size_t operator()(const VertexKey &key) const
+    {
+        std::uint64_t hash = 0;
+        for (const std::uint32_t word : key)
+            hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
+        return static_cast<std::size_t>(hash ^ hash >> 32U);
+    }
+};
+
+static VertexKey vertex_key(const Mesh &mesh, std::size_t i)
+{
+    const glm::vec3 &p = mesh.positions[i];
+    const glm::vec3 &n = mesh.normals[i];
+    const glm::vec4 c = mesh.colors.empty() ? glm::vec4(0.0F) : mesh.colors[i];
+    return std::bit_cast<VertexKey>(
+        std::array<float, 10>{p.x, p.y, p.z, n.x, n.y, n.z, c.r, c.g, c.b, c.a});
+}
+
+void join_identical_vertices(Mesh &mesh)
+{
+    std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known;
+    known.reserve(mesh.positions.size());
+    std::vector<std::uint32_t> new_index(mesh.positions.size());
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const auto next = static_cast<std::uint32_t>(known.size());
+        const auto [place, is_new] = known.try_emplace(vertex_key(mesh, i), next);
+        new_index[i] = place->second;
+        if (is_new) {
+            mesh.positions[next] = mesh.positions[i];
+            mesh.normals[next] = mesh.normals[i];
+            if (!mesh.colors.empty())
+                mesh.colors[next] = mesh.colors[i];
+        }
+    }
+    mesh.positions.resize(known.size());
+    mesh.normals.resize(known.size());
+    if (!mesh.colors.empty())
+        mesh.colors.resize(known.size());
+    for (std::uint32_t &index : mesh.indices)
+        index = new_index[index];
 }
 
 void fit_to_unit_sphere(Mesh &mesh)
@@ -118,8 +167,9 @@ Mesh make_knot(std::size_t triangles)
     const int around = std::max(3, static_cast<int>(std::sqrt(quads / 12.0)));
     const int along = std::max(8, static_cast<int>(quads / around));
     Mesh mesh;
-    append_knot(mesh, 0.6F, 0.0F, 0.3F, along, around);
-    append_knot(mesh, 0.25F, 0.5F, 0.7F, along, around);
+    // Eight bits hold these alphas exactly.
+    append_knot(mesh, 0.6F, 0.0F, 76.0F / 255.0F, along, around);
+    append_knot(mesh, 0.25F, 0.5F, 178.0F / 255.0F, along, around);
     fit_to_unit_sphere(mesh);
     return mesh;
 }

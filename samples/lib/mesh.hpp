@@ -33,6 +33,9 @@ Status check_mesh(const Mesh &mesh);
 /// missing normals made smooth. The mesh has passed check_mesh.
 Result<Mesh> load_mesh(const std::filesystem::path &path);
 
+/// Makes one vertex of those that are the same in all bits; triangles keep their order.
+void join_identical_vertices(Mesh &mesh);
+
 /// Moves and scales the mesh so that its bounding sphere about the middle of its box is the unit
 /// sphere.
 void fit_to_unit_sphere(Mesh &mesh);

@@ -10,13 +10,56 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <span>
+#include <sstream>
 
 namespace kb
 {
 
-/// What Assimp's readers would not survive: of a PLY file whose header is cut off they would read
-/// the end forever.
+/// What Assimp does not notice about PLY files. It would read the end of a header that is cut off
+/// forever, and take what is missing of a last line for zeros.
+static Status check_ply(std::ifstream &file)
+{
+    bool ascii = false;
+    bool last_is_list = false;
+    std::size_t expected = 0;
+    std::string line;
+    do {
+        if (!std::getline(file, line))
+            return Error{"its header has no end"};
+        std::istringstream words(line);
+        std::string keyword;
+        std::string name;
+        std::size_t count = 0;
+        words >> keyword >> name >> count;
+        if (keyword == "format")
+            ascii = name == "ascii";
+        else if (keyword == "element")
+            expected += count;
+        else if (keyword == "property")
+            last_is_list = name == "list";
+    } while (!line.starts_with("end_header"));
+    if (!ascii)
+        return ok;
+
+    std::size_t found = 0;
+    std::string last;
+    while (std::getline(file, line)) {
+        if (line.find_first_not_of(" \t\r") != std::string::npos) {
+            ++found;
+            last.swap(line);
+        }
+    }
+    std::istringstream words(last);
+    std::ptrdiff_t list_size = 0;
+    if (last_is_list && words >> list_size)
+        found -= std::distance(std::istream_iterator<std::string>(words), {}) < list_size;
+    if (found < expected)
+        return Error{"it ends early"};
+    return ok;
+}
+
 static Status check_file(const std::filesystem::path &path)
 {
     std::error_code code;
@@ -30,13 +73,7 @@ static Status check_file(const std::filesystem::path &path)
     std::string line;
     if (!std::getline(file, line))
         return Error{"it is empty"};
-    if (line.starts_with("ply")) {
-        while (!line.starts_with("end_header")) {
-            if (!std::getline(file, line))
-                return Error{"its header has no end"};
-        }
-    }
-    return ok;
+    return line.starts_with("ply") ? check_ply(file) : Status(ok);
 }
 
 /// What Assimp's own processing would trip over: it trusts the faces of the file.
@@ -114,9 +151,9 @@ Result<Mesh> load_mesh(const std::filesystem::path &path)
 
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                                 aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    scene = importer.ApplyPostProcessing(
-        aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices |
-        aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals);
+    scene =
+        importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
+                                     aiProcess_PreTransformVertices | aiProcess_GenSmoothNormals);
     if (!scene)
         return fail("it has no triangles");
 
@@ -125,6 +162,7 @@ Result<Mesh> load_mesh(const std::filesystem::path &path)
         append(mesh, *part);
     if (auto checked = check_mesh(mesh); !checked)
         return fail(checked.error().message);
+    join_identical_vertices(mesh); // Not by Assimp, which forgets to look at colors.
     return mesh;
 }
 

@@ -61,15 +61,15 @@ void declare_options(CLI::App &app, Options &options)
         ->capture_default_str();
     app.add_option("--alpha", options.alpha,
                    "Alpha of all fragments, 0 to 1, instead of the mesh's (rgbz: 0.4)")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check([](const std::string &text) { return kb::check_number(text, 0.0, 1.0); })
         ->type_name("A");
     kb::add_context_option(app, options.context);
     kb::add_size_option(app, options.size);
     app.add_option("--azimuth", options.camera.azimuth, "Degrees about the vertical axis")
-        ->check(CLI::Range(-360.0, 360.0))
+        ->check([](const std::string &text) { return kb::check_number(text, -360.0, 360.0); })
         ->type_name("DEG");
     app.add_option("--elevation", options.camera.elevation, "Degrees from above")
-        ->check(CLI::Range(-90.0, 90.0))
+        ->check([](const std::string &text) { return kb::check_number(text, -90.0, 90.0); })
         ->type_name("DEG");
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")
         ->check(CLI::Range(1, 10'000))

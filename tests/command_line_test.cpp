@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+//
+// Bad usage and bad input: one clear line on the standard error output, exit status 2, nothing
+// written. What the driver lacks: exit status 1.
+
+#include "process.hpp"
+#include "temp_directory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace
+{
+
+using namespace kb::test;
+
+void expect_refused(const ProcessResult &result, const std::string &program,
+                    const std::string &mention, int status = 2)
+{
+    EXPECT_EQ(result.status, status);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err.find(program + ": "), 0U) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_NE(result.err.find(mention), std::string::npos) << result.err;
+}
+
+TEST(CommandLine, TransparencyRefusesBadInput)
+{
+    const TempDirectory directory;
+    const std::string out = directory / "out.png";
+    const std::string empty = directory.write("empty.ply", "");
+    const struct {
+        std::vector<std::string> arguments;
+        std::string mention;
+    } cases[] = {
+        {{"--k", "0"}, "--k"},
+        {{"--k", "-1"}, "--k"},
+        {{"--k", "65"}, "--k"},
+        {{"--k", "99999999999999999999"}, "--k"},
+        {{"--k", "eight"}, "--k"},
+        {{"--k"}, "--k"},
+        {{"--no-such-option"}, "--no-such-option"},
+        {{"stray"}, "stray"},
+        {{"--method", "magic"}, "--method"},
+        {{"--layout", "depth"}, "--layout"},
+        {{"--context", "vulkan"}, "--context"},
+        {{"--size", "0x10"}, "--size"},
+        {{"--size", "10"}, "--size"},
+        {{"--size", "99999x1"}, "--size"},
+        {{"--size", "1x1x1"}, "--size"},
+        {{"--alpha", "1.5"}, "--alpha"},
+        {{"--alpha", "nan"}, "--alpha"},
+        {{"--repeat", "0"}, "--repeat"},
+        {{"--triangles", "-5"}, "--triangles"},
+        {{"--mesh", "/no/such/mesh.ply"}, "/no/such/mesh.ply: no such file"},
+        {{"--mesh", empty}, "it is empty"},
+        {{"--float-out", "/no/such/place.pfm"}, "/no/such"},
+        {{"--layers-out", empty}, empty},
+    };
+    for (const auto &c : cases) {
+        SCOPED_TRACE(testing::PrintToString(c.arguments));
+        std::vector<std::string> command{KBUFFER_TRANSPARENCY, "--out", out, "--size", "16x16"};
+        if (c.arguments[0] == "--size")
+            command.resize(3);
+        command.insert(command.end(), c.arguments.begin(), c.arguments.end());
+        expect_refused(run(command, mesa_environment(patched_prefix())), "transparency", c.mention);
+        EXPECT_EQ(directory.file_count(), 1U) << "something was written";
+    }
+    expect_refused(run({KBUFFER_TRANSPARENCY, "--out", directory / "no/such/out.png"}),
+                   "transparency", "no/such");
+    expect_refused(run({KBUFFER_TRANSPARENCY, "--out", directory / "."}), "transparency",
+                   "directory");
+}
+
+TEST(CommandLine, TransparencyWorksOtherwise)
+{
+    const TempDirectory directory;
+    const auto result = run({KBUFFER_TRANSPARENCY, "--out", directory / "out.png", "--size",
+                             "16x16", "--triangles", "100"},
+                            mesa_environment(patched_prefix()));
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_NE(result.out.find("1 geometry pass,"), std::string::npos) << result.out;
+    EXPECT_EQ(directory.file_count(), 1U);
+}
+
+TEST(CommandLine, MissingExtensionSaysWhatToDo)
+{
+    const TempDirectory directory;
+    auto environment = mesa_environment(patched_prefix());
+    environment["MESA_EXTENSION_OVERRIDE"] = "-GL_MESA_kbuffer_program";
+    expect_refused(run({KBUFFER_TRANSPARENCY, "--out", directory / "out.png"}, environment),
+                   "transparency", "scripts/run", 1);
+    expect_refused(run({KBUFFER_HELLO}, environment), "hello-kbuffer", "scripts/run", 1);
+    EXPECT_EQ(directory.file_count(), 0U);
+}
+
+TEST(CommandLine, HelpIsNoError)
+{
+    for (const char *program : {KBUFFER_TRANSPARENCY, KBUFFER_PROGRAM_TOOL}) {
+        const auto result = run({program, "--help"});
+        EXPECT_EQ(result.status, 0);
+        EXPECT_NE(result.out.find("--k"), std::string::npos);
+        EXPECT_EQ(result.err, "");
+    }
+}
+
+TEST(CommandLine, ProgramToolPrintsOrRefuses)
+{
+    const auto good = run({KBUFFER_PROGRAM_TOOL, "--layout", "rgbz", "--k", "3"});
+    EXPECT_EQ(good.status, 0);
+    EXPECT_EQ(good.out.find("!!ARBfp1.0\nOPTION MESA_kbuffer_program;\n"), 0U);
+
+    const TempDirectory directory;
+    const std::string file = directory / "program";
+    EXPECT_EQ(run({KBUFFER_PROGRAM_TOOL, "--layout", "rgbz", "--k", "3", "--out", file}).out, "");
+    std::ifstream stream(file);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), good.out);
+
+    expect_refused(run({KBUFFER_PROGRAM_TOOL, "--k", "0"}), "kbuffer-program", "k is 0");
+    expect_refused(run({KBUFFER_PROGRAM_TOOL, "--k", "129"}), "kbuffer-program", "1 to 128");
+    expect_refused(run({KBUFFER_PROGRAM_TOOL, "--layout", "rgbz", "--k", "65"}), "kbuffer-program",
+                   "1 to 64");
+    expect_refused(run({KBUFFER_PROGRAM_TOOL, "--layout", "x"}), "kbuffer-program", "--layout");
+    expect_refused(run({KBUFFER_PROGRAM_TOOL, "--out", "/no/such/file"}), "kbuffer-program",
+                   "/no/such/file");
+}
+
+TEST(CommandLine, HelloKBufferFindsWhatItExpects)
+{
+    for (const char *driver : {"llvmpipe", "softpipe"}) {
+        auto environment = mesa_environment(patched_prefix());
+        environment["GALLIUM_DRIVER"] = driver;
+        const auto result = run({KBUFFER_HELLO}, environment);
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_EQ(result.out, "expected 0.625 0.375 0.250, got 0.625 0.375 0.250\n");
+    }
+}
+
+} // namespace
