@@ -32,7 +32,9 @@ def main():
         test = et.SubElement(root, 'Test', type='gl',
                              name='spec@mesa_kbuffer_program@' + name)
         et.SubElement(test, 'option', name='command', value=repr(command))
-        et.SubElement(test, 'option', name='run_concurrent', value='True')
+        # What may run beside others piglit starts with -fbo.
+        et.SubElement(test, 'option', name='run_concurrent',
+                      value=str(not name.endswith('-window')))
     with gzip.open(out, 'wb') as file:
         et.ElementTree(root).write(file, encoding='utf-8',
                                    xml_declaration=True)
