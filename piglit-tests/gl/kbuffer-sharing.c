@@ -25,14 +25,19 @@ framework(void)
 }
 
 static void
-make_current(struct waffle_context *context)
+make_current_on(struct waffle_window *window, struct waffle_context *context)
 {
-	struct piglit_wfl_framework *wfl = framework();
-
-	if (!waffle_make_current(wfl->display, wfl->window, context)) {
-		printf("a context cannot be made current\n");
+	if (!waffle_make_current(framework()->display, window, context)) {
+		printf("a context cannot be made current: %s\n",
+		       waffle_error_get_info()->message);
 		piglit_report_result(PIGLIT_FAIL);
 	}
+}
+
+static void
+make_current(struct waffle_context *context)
+{
+	make_current_on(framework()->window, context);
 }
 
 static struct waffle_context *
@@ -179,6 +184,7 @@ not_shared(void *data)
 
 struct worker {
 	struct waffle_context *context;
+	struct waffle_window *window;   /**< current in one thread only */
 	int number;
 	bool pass;
 };
@@ -195,7 +201,7 @@ work(void *data)
 	char string[256];
 	GLuint name;
 
-	make_current(w->context);
+	make_current_on(w->window, w->context);
 	glGenTextures(1, &kb.tex[0]);
 	glBindTexture(GL_TEXTURE_2D, kb.tex[0]);
 	glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, W, W, 0, GL_RGBA, GL_FLOAT,
@@ -233,26 +239,25 @@ threads(void *data)
 	pthread_t handles[4];
 	bool pass = true;
 
-	/* Resolve piglit's function pointers before, in one thread. */
-	workers[0].context = new_context(false);
-	workers[0].number = 1;
-	glFinish();
-	waffle_make_current(framework()->display, NULL, NULL);
-	work(&workers[0]);
-	pass = workers[0].pass;
-	for (int i = 1; i < 4; i++) {
+	for (int i = 0; i < 4; i++) {
 		workers[i].context = new_context(false);
+		workers[i].window = waffle_window_create(framework()->config,
+							 W, W);
 		workers[i].number = i + 1;
 	}
+	/* The first alone: piglit's function pointers are resolved then. */
+	waffle_make_current(framework()->display, NULL, NULL);
+	work(&workers[0]);
 	for (int i = 1; i < 4; i++)
 		pthread_create(&handles[i], NULL, work, &workers[i]);
-	for (int i = 1; i < 4; i++) {
+	for (int i = 1; i < 4; i++)
 		pthread_join(handles[i], NULL);
-		pass = workers[i].pass && pass;
-	}
 	make_current(framework()->context);
-	for (int i = 0; i < 4; i++)
+	for (int i = 0; i < 4; i++) {
+		pass = workers[i].pass && pass;
 		waffle_context_destroy(workers[i].context);
+		waffle_window_destroy(workers[i].window);
+	}
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
