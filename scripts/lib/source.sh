@@ -91,15 +91,16 @@ version_at_least() { # VERSION NEEDED
     printf '%s\n%s\n' "$2" "$1" | sort -V -C
 }
 
-# Sets meson=(COMMAND...). The distribution's when it is new enough, else the one of its backports,
-# unpacked into build/tools: nothing is installed for it.
+# Sets meson=(COMMAND...). One that is installed if it is new enough, else the one of the
+# distribution's backports, unpacked into build/tools: nothing is installed for it.
 need_meson() {
-    local version folder tool=$build/tools/meson
-    version=$(/usr/bin/meson --version 2>/dev/null || echo 0)
-    if version_at_least "$version" "$meson_needed"; then
-        meson=("$python" /usr/bin/meson)
-        return 0
-    fi
+    local candidate folder tool=$build/tools/meson
+    while read -r candidate; do
+        if version_at_least "$("$candidate" --version 2>/dev/null || echo 0)" "$meson_needed"; then
+            meson=("$candidate")
+            return 0
+        fi
+    done < <(type -ap meson)
     meson=("$python" "$tool/meson.py")
     [ ! -f "$tool/meson.py" ] || return 0
     say "Fetching Meson of $distribution_suite-backports into build/tools ($meson_needed is needed)"
