@@ -50,6 +50,12 @@ struct kb {
 	int width, height;
 };
 
+/** Objects that are deleted when the subtest ends. */
+GLuint
+kb_new_texture(void);
+GLuint
+kb_new_framebuffer(void);
+
 /**
  * Make and bind a framebuffer with \p attachments color textures of
  * \p layers layers (0: plain 2D textures), all of them draw buffers, cleared
@@ -100,6 +106,26 @@ kb_expect_only_rect(const struct kb *kb, int entry, int x, int y, int w, int h,
 /** All pixels of an RGBA32F entry have these bits. */
 bool
 kb_expect_bits(const struct kb *kb, int entry, const uint32_t bits[4]);
+
+#define KB_SAMPLES 4
+#define KB_MS_SIZE 32
+
+/** A multisample framebuffer of RGBA32F and a 32-bit depth buffer. */
+struct kb_ms {
+	struct kb kb;
+	GLuint tex[2], depth;
+};
+
+/** Make, bind and clear one; ends the test where there are no four samples. */
+struct kb_ms
+kb_ms_create(int attachments, int layers);
+
+/**
+ * All samples of one of its textures (of one layer): KB_SAMPLES images of
+ * KB_MS_SIZE squared RGBA; free() them.
+ */
+float *
+kb_ms_read(const struct kb_ms *ms, GLuint tex, int layer);
 
 /**
  * Load and bind a k-buffer program; \p body is what stands between the

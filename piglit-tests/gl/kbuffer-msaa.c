@@ -12,112 +12,7 @@
 
 #include "kbuffer-common.h"
 
-#define W 32
-#define SAMPLES 4
-
-/** A multisample framebuffer and a plain one to look at its samples. */
-struct ms {
-	struct kb kb;           /**< RGBA32F, four samples, bound */
-	GLuint tex[2], depth;
-};
-
-static struct ms
-make(int attachments, int layers)
-{
-	struct ms ms = { .kb = kb_create(GL_RGBA32F, 0, 0, W, W) };
-	const GLenum target = layers ? GL_TEXTURE_2D_MULTISAMPLE_ARRAY :
-		GL_TEXTURE_2D_MULTISAMPLE;
-	GLenum buffers[2];
-	GLint max_samples = 0;
-
-	glGetIntegerv(GL_MAX_SAMPLES, &max_samples);
-	if (max_samples < SAMPLES) {
-		printf("there are no %d samples here\n", SAMPLES);
-		piglit_report_result(PIGLIT_SKIP);
-	}
-	glGenTextures(2, ms.tex);
-	glGenTextures(1, &ms.depth);
-	for (int i = 0; i < attachments; i++) {
-		glBindTexture(target, ms.tex[i]);
-		if (layers)
-			glTexImage3DMultisample(target, SAMPLES, GL_RGBA32F,
-						W, W, layers, GL_TRUE);
-		else
-			glTexImage2DMultisample(target, SAMPLES, GL_RGBA32F,
-						W, W, GL_TRUE);
-		buffers[i] = GL_COLOR_ATTACHMENT0 + i;
-		glFramebufferTexture(GL_FRAMEBUFFER, buffers[i], ms.tex[i], 0);
-	}
-	glBindTexture(target, ms.depth);
-	if (layers)
-		glTexImage3DMultisample(target, SAMPLES, GL_DEPTH_COMPONENT32F,
-					W, W, layers, GL_TRUE);
-	else
-		glTexImage2DMultisample(target, SAMPLES, GL_DEPTH_COMPONENT32F,
-					W, W, GL_TRUE);
-	glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, ms.depth, 0);
-	glDrawBuffers(attachments, buffers);
-	if (glCheckFramebufferStatus(GL_FRAMEBUFFER) !=
-	    GL_FRAMEBUFFER_COMPLETE) {
-		printf("incomplete multisample framebuffer\n");
-		piglit_report_result(PIGLIT_FAIL);
-	}
-	ms.kb.attachments = attachments;
-	ms.kb.layers = layers;
-	glClearColor(0, 0, 0, 0);
-	glClearDepth(1);
-	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-	return ms;
-}
-
-static void
-destroy(struct ms *ms)
-{
-	glDeleteTextures(2, ms->tex);
-	glDeleteTextures(1, &ms->depth);
-}
-
-/** All samples of a texture (or of a layer): SAMPLES W x W images. */
-static float *
-read_samples(const struct ms *ms, GLuint tex, int layer)
-{
-	static const char fs[] =
-		"#version 150 compatibility\n"
-		"uniform sampler2DMS t2;\nuniform sampler2DMSArray t3;\n"
-		"uniform int layer, s;\nout vec4 o;\n"
-		"void main() { ivec2 p = ivec2(gl_FragCoord.xy);\n"
-		"  o = layer < 0 ? texelFetch(t2, p, s) :\n"
-		"      texelFetch(t3, ivec3(p, layer), s); }\n";
-	struct kb out = kb_create(GL_RGBA32F, 1, 0, W, W);
-	float *got = malloc(SAMPLES * W * W * 16);
-	GLuint program;
-
-	glPushAttrib(GL_ENABLE_BIT | GL_CURRENT_BIT);
-	glDisable(GL_KBUFFER_PROGRAM_MESA);
-	glDisable(GL_DEPTH_TEST);
-	glDisable(GL_FRAGMENT_PROGRAM_ARB);
-	program = kb_use_glsl("#version 150 compatibility\n"
-			      "void main() { gl_Position = gl_Vertex; }\n",
-			      NULL, fs);
-	glUniform1i(glGetUniformLocation(program, "t2"), 0);
-	glUniform1i(glGetUniformLocation(program, "t3"), 1);
-	glUniform1i(glGetUniformLocation(program, "layer"),
-		    ms->kb.layers ? layer : -1);
-	glActiveTexture(ms->kb.layers ? GL_TEXTURE1 : GL_TEXTURE0);
-	glBindTexture(ms->kb.layers ? GL_TEXTURE_2D_MULTISAMPLE_ARRAY :
-		      GL_TEXTURE_2D_MULTISAMPLE, tex);
-	for (int s = 0; s < SAMPLES; s++) {
-		glUniform1i(glGetUniformLocation(program, "s"), s);
-		kb_draw(&out);
-		glReadPixels(0, 0, W, W, GL_RGBA, GL_FLOAT,
-			     got + s * W * W * 4);
-	}
-	glActiveTexture(GL_TEXTURE0);
-	glUseProgram(0);
-	glPopAttrib();
-	glBindFramebuffer(GL_FRAMEBUFFER, ms->kb.fbo);
-	return got;
-}
+#define W KB_MS_SIZE
 
 /** A slanted edge through the pixels: a triangle that leaves half free. */
 static void
@@ -137,20 +32,20 @@ triangle(float z0, float z1)
 static enum piglit_result
 per_covered_sample(void *data)
 {
-	struct ms ms = make(2, (int)(intptr_t)data);
+	struct kb_ms ms = kb_ms_create(2, (int)(intptr_t)data);
 	float *plain, *counted;
 	int partial = 0;
 	bool pass = true;
 
 	kb_fragment_values((const float[2][4]) { { 0 }, { 1, 1, 1, 1 } }, 2);
 	triangle(0, 0);
-	plain = read_samples(&ms, ms.tex[1], 0);
+	plain = kb_ms_read(&ms, ms.tex[1], 0);
 	kb_program("ADD result.kbuffer[0], kbuffer[0], 1;");
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	triangle(0, 0);
 	triangle(0, 0);
-	counted = read_samples(&ms, ms.tex[0], 0);
-	for (int i = 0; i < W * W * SAMPLES && pass; i++) {
+	counted = kb_ms_read(&ms, ms.tex[0], 0);
+	for (int i = 0; i < W * W * KB_SAMPLES && pass; i++) {
 		pass = counted[4 * i] == 2 * plain[4 * i];
 		if (!pass)
 			printf("pixel %d, sample %d: covered %g, counted %g\n",
@@ -164,7 +59,6 @@ per_covered_sample(void *data)
 	}
 	free(plain);
 	free(counted);
-	destroy(&ms);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
@@ -172,7 +66,7 @@ per_covered_sample(void *data)
 static enum piglit_result
 depth_of_sample(void *data)
 {
-	struct ms ms = make(1, 0);
+	struct kb_ms ms = kb_ms_create(1, 0);
 	float *z, *depth;
 	bool pass = true, differs = false;
 
@@ -184,9 +78,9 @@ depth_of_sample(void *data)
 		glPolygonOffset(1, 0);
 	}
 	triangle(-.9, .8);
-	z = read_samples(&ms, ms.tex[0], 0);
-	depth = read_samples(&ms, ms.depth, 0);
-	for (int i = 0; i < W * W * SAMPLES && pass; i++) {
+	z = kb_ms_read(&ms, ms.tex[0], 0);
+	depth = kb_ms_read(&ms, ms.depth, 0);
+	for (int i = 0; i < W * W * KB_SAMPLES && pass; i++) {
 		const int pixel = i % (W * W);
 
 		/* Where nothing was drawn: 0 and 1. */
@@ -207,7 +101,6 @@ depth_of_sample(void *data)
 	}
 	free(z);
 	free(depth);
-	destroy(&ms);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
@@ -215,7 +108,7 @@ depth_of_sample(void *data)
 static enum piglit_result
 depth_test_of_sample(void *data)
 {
-	struct ms ms = make(1, 0);
+	struct kb_ms ms = kb_ms_create(1, 0);
 	float *got, *depth;
 	bool pass = true;
 	int mixed = 0;
@@ -233,9 +126,9 @@ depth_test_of_sample(void *data)
 	glVertex3f(1, 1, .9);
 	glVertex3f(-1, 1, -.8);
 	glEnd();
-	got = read_samples(&ms, ms.tex[0], 0);
-	depth = read_samples(&ms, ms.depth, 0);
-	for (int i = 0; i < W * W * SAMPLES && pass; i++) {
+	got = kb_ms_read(&ms, ms.tex[0], 0);
+	depth = kb_ms_read(&ms, ms.depth, 0);
+	for (int i = 0; i < W * W * KB_SAMPLES && pass; i++) {
 		const float passed = depth[4 * i] < .5f;
 
 		pass = got[4 * i] == 1 && got[4 * i + 1] == passed;
@@ -251,7 +144,6 @@ depth_test_of_sample(void *data)
 	}
 	free(got);
 	free(depth);
-	destroy(&ms);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
@@ -265,7 +157,7 @@ shader_once(void *data)
 		"layout(early_fragment_tests) in;\n"
 		"out vec4 o;\n"
 		"void main() { atomicCounterIncrement(n); o = vec4(1); }\n";
-	struct ms ms = make(1, 0);
+	struct kb_ms ms = kb_ms_create(1, 0);
 	const GLuint zero = 0;
 	GLuint buffer, counts[2];
 	float *got;
@@ -294,12 +186,11 @@ shader_once(void *data)
 		       "program\n", counts[0], counts[1]);
 		pass = false;
 	}
-	got = read_samples(&ms, ms.tex[0], 0);
-	for (int i = 0; i < W * W * SAMPLES; i++)
+	got = kb_ms_read(&ms, ms.tex[0], 0);
+	for (int i = 0; i < W * W * KB_SAMPLES; i++)
 		pass = got[4 * i] == 2 && pass;
 	free(got);
 	glDeleteBuffers(1, &buffer);
-	destroy(&ms);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
@@ -307,7 +198,7 @@ shader_once(void *data)
 static enum piglit_result
 masks(void *data)
 {
-	struct ms ms = make(1, 0);
+	struct kb_ms ms = kb_ms_create(1, 0);
 	float *got;
 	bool pass = true;
 
@@ -320,16 +211,15 @@ masks(void *data)
 		glSampleMaski(0, (i < 2) | (i < 4) << 1 | 1 << 2);
 		kb_draw(&ms.kb);
 	}
-	got = read_samples(&ms, ms.tex[0], 0);
-	for (int i = 0; i < W * W * SAMPLES && pass; i++) {
-		static const float wanted[SAMPLES] = { 2, 3, 3, 0 };
+	got = kb_ms_read(&ms, ms.tex[0], 0);
+	for (int i = 0; i < W * W * KB_SAMPLES && pass; i++) {
+		static const float wanted[KB_SAMPLES] = { 2, 3, 3, 0 };
 
 		pass = got[4 * i] == wanted[i / (W * W)];
 		if (!pass)
 			printf("sample %d: %g\n", i / (W * W), got[4 * i]);
 	}
 	free(got);
-	destroy(&ms);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 

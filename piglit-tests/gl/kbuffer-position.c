@@ -230,6 +230,32 @@ written_depth(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** With early tests the shader's depth is ignored, here as in the buffer. */
+static enum piglit_result
+early_tests(void *data)
+{
+	struct kb kb = make(GL_DEPTH_COMPONENT32F);
+	bool pass;
+
+	if (!piglit_is_extension_supported(
+			"GL_ARB_shader_image_load_store")) {
+		printf("no early fragment tests here\n");
+		return PIGLIT_SKIP;
+	}
+	kb_use_glsl("#version 130\nvoid main() { gl_Position = gl_Vertex; }\n",
+		    NULL, "#version 150 compatibility\n"
+		    "#extension GL_ARB_shader_image_load_store: require\n"
+		    "layout(early_fragment_tests) in;\nvoid main() { "
+		    "gl_FragDepth = 0.125; gl_FragColor = vec4(1); }\n");
+	slanted(-.9, .7);
+	pass = equals_depth_buffer(&kb);
+	glDisable(GL_DEPTH_TEST);
+	slanted(-1, 1);
+	pass = kb_expect_rect(&kb, 0, 31, 0, 1, 1, 1e-6, 31.5, .5, 31.5 / W,
+			      1) && pass;
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 /**
  * Without a depth test z is that which the test would use.  With a depth
  * buffer of fewer bits it may be rounded to them, but no more.
@@ -265,6 +291,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("depth-clamp", depth_clamp, NULL),
 	KB_SUBTEST("written-depth", written_depth, GL_DEPTH_COMPONENT32F),
 	KB_SUBTEST("written-depth-without-buffer", written_depth, NULL),
+	KB_SUBTEST("early-tests", early_tests, NULL),
 	KB_SUBTEST("no-depth-buffer", no_depth_test, NULL),
 	KB_SUBTEST("no-depth-test-32f", no_depth_test, GL_DEPTH_COMPONENT32F),
 	KB_SUBTEST("no-depth-test-24", no_depth_test, GL_DEPTH_COMPONENT24),
