@@ -211,6 +211,8 @@ masks(void *data)
 		glSampleMaski(0, (i < 2) | (i < 4) << 1 | 1 << 2);
 		kb_draw(&ms.kb);
 	}
+	/* Mesa's PopAttrib does not. */
+	glDisable(GL_SAMPLE_MASK);
 	got = kb_ms_read(&ms, ms.tex[0], 0);
 	for (int i = 0; i < W * W * KB_SAMPLES && pass; i++) {
 		static const float wanted[KB_SAMPLES] = { 2, 3, 3, 0 };
@@ -223,6 +225,44 @@ masks(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** Alpha decides over coverage and becomes one before the program runs. */
+static enum piglit_result
+alpha_to_coverage(void *data)
+{
+	struct kb_ms ms = kb_ms_create(2, 0);
+	float *plain, *got;
+	int covered = 0;
+	bool pass = true;
+
+	glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+	kb_fragment_values((const float[2][4]) { { 1, 2, 3, .5 },
+						 { 1, 1, 1, 1 } }, 2);
+	kb_draw(&ms.kb);
+	plain = kb_ms_read(&ms, ms.tex[1], 0);
+	glClear(GL_COLOR_BUFFER_BIT);
+	glEnable(GL_SAMPLE_ALPHA_TO_ONE);
+	kb_program("MOV result.kbuffer[0], fragment.color;");
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	kb_draw(&ms.kb);
+	got = kb_ms_read(&ms, ms.tex[0], 0);
+	for (int i = 0; i < W * W * KB_SAMPLES && pass; i++) {
+		pass = got[4 * i] == plain[4 * i] &&
+			got[4 * i + 3] == plain[4 * i];
+		covered += plain[4 * i] == 1;
+		if (!pass)
+			printf("sample %d: covered %g, got %g, alpha %g\n",
+			       i / (W * W), plain[4 * i], got[4 * i],
+			       got[4 * i + 3]);
+	}
+	if (covered == 0 || covered == W * W * KB_SAMPLES) {
+		printf("%d samples are covered\n", covered);
+		pass = false;
+	}
+	free(plain);
+	free(got);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("per-covered-sample", per_covered_sample, 0),
 	KB_SUBTEST("per-covered-sample-in-layers", per_covered_sample, 2),
@@ -231,6 +271,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("depth-test-of-sample", depth_test_of_sample, NULL),
 	KB_SUBTEST("shader-once", shader_once, NULL),
 	KB_SUBTEST("masks", masks, NULL),
+	KB_SUBTEST("alpha-to-coverage", alpha_to_coverage, NULL),
 	KB_SUBTEST_END
 };
 
