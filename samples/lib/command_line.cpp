@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <cstdio>
+#include <cstdlib>
 
 namespace kb
 {
@@ -40,8 +41,9 @@ int fail(const CLI::App &app, const Error &error, int status)
 
 std::string check_number(const std::string &text, double low, double high)
 {
-    double value = 0.0;
-    if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high)
+    char *end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (!text.empty() && *end == '\0' && value >= low && value <= high)
         return {};
     return fmt::format("{} is not in the range from {} to {}", text, low, high);
 }

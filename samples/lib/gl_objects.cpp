@@ -57,10 +57,13 @@ Texture make_texture_2d_array(const Gl &gl, GLenum internal_format, int width, i
 
 Status check_framebuffer(const Gl &gl)
 {
+    // First what may have made it incomplete, most likely a lack of memory.
+    if (auto made = check_gl(gl, "making the framebuffer"); !made)
+        return made;
     const GLenum status = gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE)
         return Error{fmt::format("the framebuffer is incomplete (status {:#06x})", status)};
-    return check_gl(gl, "setting up the framebuffer");
+    return ok;
 }
 
 static std::string first_line(std::string text)

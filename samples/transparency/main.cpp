@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <new>
 
 namespace
 {
@@ -184,7 +185,12 @@ int main(int argc, char **argv)
     if (auto writable = kb::check_writable(options.outputs); !writable)
         return kb::fail(app, writable.error(), kb::exit_bad_input);
 
-    if (const auto failure = run(options, *mesh, *layout))
-        return kb::fail(app, failure->error, failure->status);
+    try {
+        if (const auto failure = run(options, *mesh, *layout))
+            return kb::fail(app, failure->error, failure->status);
+    } catch (const std::bad_alloc &) {
+        return kb::fail(app, kb::Error{"there is not enough memory for --size and --k"},
+                        kb::exit_lacking);
+    }
     return 0;
 }
