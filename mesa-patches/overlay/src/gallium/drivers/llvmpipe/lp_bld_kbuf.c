@@ -18,6 +18,7 @@
 #include "lp_bld_kbuf_format.h"
 #include "lp_jit.h"
 #include "lp_kbuf.h"
+#include "lp_kbuf_tile.h"
 #include "lp_state_fs.h"
 #include "lp_tex_sample.h"
 
@@ -32,25 +33,6 @@ struct kbuf_context
 };
 
 
-/*
- * The place in lp_jit_thread_data of a pointer that its LLVM type does not
- * have: that type is in the code of variants that have no such stage.
- */
-static LLVMValueRef
-jit_kbuf_ptr(struct gallivm_state *gallivm,
-             const struct lp_build_kbuf_params *params)
-{
-   LLVMTypeRef int8_type = LLVMInt8TypeInContext(gallivm->context);
-   LLVMValueRef offset =
-      lp_build_const_int32(gallivm, offsetof(struct lp_jit_thread_data, kbuf));
-   LLVMValueRef ptr = LLVMBuildGEP2(gallivm->builder, int8_type,
-                                    params->thread_data_ptr, &offset, 1, "");
-
-   return LLVMBuildLoad2(gallivm->builder, LLVMPointerType(int8_type, 0), ptr,
-                         "kbuf");
-}
-
-
 static LLVMValueRef
 byte_offset(struct gallivm_state *gallivm, LLVMValueRef ptr,
             LLVMValueRef offset)
@@ -58,6 +40,23 @@ byte_offset(struct gallivm_state *gallivm, LLVMValueRef ptr,
    LLVMTypeRef int8_type = LLVMInt8TypeInContext(gallivm->context);
 
    return LLVMBuildGEP2(gallivm->builder, int8_type, ptr, &offset, 1, "");
+}
+
+
+/**
+ * Load a pointer that lies in a structure.  The two in lp_jit_thread_data have
+ * no place in its LLVM type because that is in the code of variants without
+ * the stage, too.
+ */
+static LLVMValueRef
+load_ptr(struct gallivm_state *gallivm, LLVMValueRef base, size_t offset)
+{
+   LLVMTypeRef ptr_type =
+      LLVMPointerType(LLVMInt8TypeInContext(gallivm->context), 0);
+
+   return LLVMBuildLoad2(gallivm->builder, ptr_type,
+                         byte_offset(gallivm, base,
+                                     lp_build_const_int32(gallivm, offset)), "");
 }
 
 
@@ -113,6 +112,99 @@ rename_texture_functions(struct gallivm_state *gallivm)
          snprintf(new_name, sizeof new_name, "fs_%s", name);
          LLVMSetValueName2(func, new_name, strlen(new_name));
       }
+   }
+}
+
+
+/** Have the block copied if no fragment has come to it before. */
+static void
+load_tile_block(struct gallivm_state *gallivm, LLVMValueRef tile,
+                LLVMValueRef block)
+{
+   LLVMBuilderRef builder = gallivm->builder;
+   LLVMTypeRef int8_type = LLVMInt8TypeInContext(gallivm->context);
+   LLVMTypeRef arg_types[2] = {
+      LLVMPointerType(int8_type, 0), LLVMInt32TypeInContext(gallivm->context)
+   };
+   LLVMTypeRef func_type =
+      LLVMFunctionType(LLVMVoidTypeInContext(gallivm->context), arg_types, 2, 0);
+   LLVMValueRef valid =
+      byte_offset(gallivm, tile,
+                  lp_build_const_int32(gallivm,
+                                       offsetof(struct lp_kbuf_tile, valid)));
+   struct lp_build_if_state invalid;
+
+   valid = LLVMBuildLoad2(builder, int8_type,
+                          byte_offset(gallivm, valid, block), "valid");
+   lp_build_if(&invalid, gallivm,
+               LLVMBuildICmp(builder, LLVMIntEQ, valid,
+                             LLVMConstInt(int8_type, 0, 0), ""));
+   {
+      LLVMValueRef args[2] = { tile, block };
+      LLVMValueRef func = load_ptr(gallivm, tile,
+                                   offsetof(struct lp_kbuf_tile, load_block));
+
+      LLVMBuildCall2(builder, func_type, func, args, 2, "");
+   }
+   lp_build_endif(&invalid);
+}
+
+
+/** The pointers to the group's pixels in the thread's copy of the tile. */
+static void
+locate_tile_entries(struct kbuf_context *ctx)
+{
+   const struct lp_build_kbuf_params *params = ctx->params;
+   const struct lp_fragment_shader_variant_key *key = params->key;
+   struct gallivm_state *gallivm = ctx->gallivm;
+   LLVMBuilderRef builder = gallivm->builder;
+   const unsigned num_cbufs = params->kbuf->num_color_buffers;
+   struct lp_kbuf_layout layout;
+
+   lp_kbuf_layout_init(&layout, key->kbuf.num_entries, num_cbufs,
+                       key->cbuf_format, key->nr_cbufs);
+
+   LLVMValueRef tile =
+      load_ptr(gallivm, params->thread_data_ptr,
+               offsetof(struct lp_jit_thread_data, kbuf_tile));
+
+   /* block = y / 4 % 16 * 16 + x / 4 % 16 */
+   LLVMValueRef y = LLVMBuildShl(builder, params->y,
+                                 lp_build_const_int32(gallivm, 2), "");
+   LLVMValueRef x = LLVMBuildLShr(builder, params->x,
+                                  lp_build_const_int32(gallivm, 2), "");
+   y = LLVMBuildAnd(builder, y, lp_build_const_int32(gallivm, 0xf0), "");
+   x = LLVMBuildAnd(builder, x, lp_build_const_int32(gallivm, 0xf), "");
+   STATIC_ASSERT(TILE_SIZE == 64);
+   LLVMValueRef block = LLVMBuildOr(builder, y, x, "block");
+
+   load_tile_block(gallivm, tile, block);
+
+   LLVMValueRef words = load_ptr(gallivm, tile,
+                                 offsetof(struct lp_kbuf_tile, data));
+   LLVMValueRef offset =
+      LLVMBuildMul(builder, block,
+                   lp_build_const_int32(gallivm,
+                                        layout.size * LP_KBUF_WORD_SIZE), "");
+   words = byte_offset(gallivm, words, offset);
+   offset = LLVMBuildMul(builder, params->group,
+                         lp_build_const_int32(gallivm, params->type.length * 4), "");
+   words = byte_offset(gallivm, words, offset);
+
+   for (unsigned e = 0; e < key->kbuf.num_entries; e++) {
+      struct lp_kbuf_pixels *pixels = &ctx->pixels[e];
+      const unsigned cbuf = e % num_cbufs;
+
+      if (cbuf >= key->nr_cbufs || key->cbuf_format[cbuf] == PIPE_FORMAT_NONE)
+         continue;
+
+      pixels->gallivm = gallivm;
+      pixels->type = params->type;
+      pixels->desc = util_format_description(key->cbuf_format[cbuf]);
+      pixels->words =
+         byte_offset(gallivm, words,
+                     lp_build_const_int32(gallivm,
+                                          layout.offset[e] * LP_KBUF_WORD_SIZE));
    }
 }
 
@@ -376,8 +468,13 @@ lp_build_kbuf_stage(struct gallivm_state *gallivm,
    lp_build_mask_begin(&ctx->mask, gallivm, params->type, params->mask);
    lp_build_mask_check(&ctx->mask);
 
-   LLVMValueRef jit_kbuf = jit_kbuf_ptr(gallivm, params);
-   locate_entries(ctx, jit_kbuf);
+   LLVMValueRef jit_kbuf =
+      load_ptr(gallivm, params->thread_data_ptr,
+               offsetof(struct lp_jit_thread_data, kbuf));
+   if (key->kbuf.tiled)
+      locate_tile_entries(ctx);
+   else
+      locate_entries(ctx, jit_kbuf);
    build_program(ctx, jit_kbuf);
 
    LLVMValueRef alive = lp_build_mask_end(&ctx->mask);

@@ -33,6 +33,7 @@ struct lp_build_kbuf_params
    LLVMValueRef thread_data_ptr;
 
    LLVMValueRef group;        /**< number of the group in its 4x4 block */
+   LLVMValueRef x, y;         /**< of the block */
    LLVMValueRef sample;       /**< looked at for multisampled buffers only */
    LLVMValueRef mask;         /**< lanes with a fragment */
    LLVMValueRef pos[4];       /**< of the sample in z, else of the pixel */

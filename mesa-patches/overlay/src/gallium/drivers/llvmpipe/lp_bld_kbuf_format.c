@@ -14,6 +14,8 @@
 #include "gallivm/lp_bld_init.h"
 #include "gallivm/lp_bld_swizzle.h"
 
+#include "lp_kbuf_tile.h"
+
 #define MAX_LANES 8
 
 
@@ -234,10 +236,45 @@ store_aos(const struct lp_kbuf_pixels *pixels, const LLVMValueRef aos[4])
 }
 
 
+/*
+ * Pixels in the copy of the tile.
+ */
+
+static LLVMValueRef
+tile_word_ptr(const struct lp_kbuf_pixels *pixels, unsigned w)
+{
+   LLVMValueRef offset =
+      lp_build_const_int32(pixels->gallivm, w * LP_KBUF_WORD_SIZE);
+
+   return LLVMBuildGEP2(pixels->gallivm->builder,
+                        LLVMInt8TypeInContext(pixels->gallivm->context),
+                        pixels->words, &offset, 1, "");
+}
+
+
+static LLVMValueRef
+load_tile_word(const struct lp_kbuf_pixels *pixels, unsigned w)
+{
+   LLVMValueRef word =
+      LLVMBuildLoad2(pixels->gallivm->builder,
+                     int_type(pixels, 32, pixels->type.length),
+                     tile_word_ptr(pixels, w), "");
+
+   LLVMSetAlignment(word, pixels->type.length * 4);
+   return word;
+}
+
+
 static void
 load_words(const struct lp_kbuf_pixels *pixels, LLVMValueRef words[4])
 {
    LLVMValueRef aos[4];
+
+   if (pixels->words) {
+      for (unsigned w = 0; w < num_words(pixels); w++)
+         words[w] = load_tile_word(pixels, w);
+      return;
+   }
 
    switch (num_words(pixels)) {
    case 1:
@@ -282,19 +319,32 @@ store_words(const struct lp_kbuf_pixels *pixels, LLVMValueRef mask,
 
    load_words(pixels, old);
    for (unsigned w = 0; w < num_words(pixels); w++) {
-      words[w] = bits[w] ? new_words[w] : old[w];
-      if (bits[w] && ~bits[w]) {
-         words[w] = LLVMBuildAnd(builder, words[w],
-                                 lp_build_const_int_vec(gallivm, type, bits[w]), "");
-         LLVMValueRef kept =
-            LLVMBuildAnd(builder, old[w],
-                         lp_build_const_int_vec(gallivm, type, ~bits[w]), "");
-         words[w] = LLVMBuildOr(builder, words[w], kept, "");
+      if (!bits[w]) {
+         words[w] = old[w];
+      } else if (!~bits[w]) {
+         words[w] = select_lanes(pixels, mask, new_words[w], old[w]);
+      } else {
+         /* Lanes by bits, too: LLVM 19 gets a select between the old value
+          * and bits of it wrong with AVX-512 (a masked vpternlog).
+          */
+         LLVMValueRef changed =
+            LLVMBuildAnd(builder, mask,
+                         lp_build_const_int_vec(gallivm, type, bits[w]), "");
+         words[w] = LLVMBuildXor(builder, old[w], new_words[w], "");
+         words[w] = LLVMBuildAnd(builder, words[w], changed, "");
+         words[w] = LLVMBuildXor(builder, words[w], old[w], "");
       }
-      words[w] = select_lanes(pixels, mask, words[w], old[w]);
    }
 
-   if (num_words(pixels) == 1)
+   if (pixels->words) {
+      for (unsigned w = 0; w < num_words(pixels); w++) {
+         if (bits[w]) {
+            LLVMValueRef instr = LLVMBuildStore(builder, words[w],
+                                                tile_word_ptr(pixels, w));
+            LLVMSetAlignment(instr, pixels->type.length * 4);
+         }
+      }
+   } else if (num_words(pixels) == 1)
       store_1_word(pixels, words);
    else
       store_2_words(pixels, words);
@@ -554,7 +604,7 @@ lp_build_kbuf_store(const struct lp_kbuf_pixels *pixels,
    if (!(bits[0] | bits[1] | bits[2] | bits[3]))
       return;
 
-   if (num_words(pixels) > 2)
+   if (num_words(pixels) > 2 && !pixels->words)
       store_words_aos(pixels, mask, words, bits);
    else
       store_words(pixels, mask, words, bits);

@@ -12,6 +12,9 @@
  * All of it is loaded and stored, masked or not: a block of 4x4 pixels
  * belongs to one thread, and every texture is padded to whole blocks.  Only
  * an explicit 1D resource has a single row.
+ *
+ * In the thread's copy of the tile (lp_kbuf_tile.h) they are such vectors
+ * already.
  */
 
 #ifndef LP_BLD_KBUF_FORMAT_H
@@ -29,6 +32,7 @@ struct lp_kbuf_pixels
    struct lp_type type;        /**< float vectors of 4 or 8 lanes */
    const struct util_format_description *desc;
    LLVMValueRef rows[2];       /**< byte pointers, [1] is NULL in 1D */
+   LLVMValueRef words;         /**< or this, in the thread's copy of the tile */
 };
 
 /** Whether conversions need denormals, which are off in raster threads. */

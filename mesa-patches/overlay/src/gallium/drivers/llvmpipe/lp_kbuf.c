@@ -11,12 +11,16 @@
 #include "util/blob.h"
 #include "util/format/u_format.h"
 #include "util/mesa-sha1.h"
+#include "util/u_debug.h"
+#include "util/u_framebuffer.h"
 #include "util/u_memory.h"
 
 #include "lp_context.h"
 #include "lp_flush.h"
 #include "lp_jit.h"
+#include "lp_kbuf_tile.h"
 #include "lp_scene.h"
+#include "lp_screen.h"
 #include "lp_setup_context.h"
 #include "lp_state.h"
 #include "lp_state_fs.h"
@@ -67,6 +71,8 @@ gather_program_info(struct lp_kbuf_program *program)
              intr->intrinsic == nir_intrinsic_store_kbuffer_mesa) {
             program->num_entries = MAX2(program->num_entries,
                                         nir_intrinsic_base(intr) + 1);
+            if (intr->intrinsic == nir_intrinsic_store_kbuffer_mesa)
+               program->written |= BITFIELD64_BIT(nir_intrinsic_base(intr));
          }
       }
    }
@@ -191,10 +197,11 @@ lp_kbuf_static_samplers(const struct lp_kbuf_state *kbuf,
 }
 
 
-/** Layers that every color buffer has. */
+/** Entries that exist, of those that the program names. */
 static unsigned
-num_layers(const struct pipe_framebuffer_state *fb)
+num_entries(const struct llvmpipe_context *lp)
 {
+   const struct pipe_framebuffer_state *fb = &lp->framebuffer;
    unsigned layers = LP_MAX_KBUF_ENTRIES;
 
    for (unsigned i = 0; i < fb->nr_cbufs; i++) {
@@ -204,7 +211,35 @@ num_layers(const struct pipe_framebuffer_state *fb)
          layers = MIN2(layers, surf->u.tex.last_layer -
                                surf->u.tex.first_layer + 1);
    }
-   return layers;
+   return MIN2(lp->kbuf.program->num_entries,
+               lp->kbuf.num_color_buffers * layers);
+}
+
+
+/**
+ * Whether to work on the thread's copy of the tile.  Sample planes and 1D
+ * resources are left to the way that works on the color buffers themselves.
+ */
+static bool
+use_tile(const struct llvmpipe_context *lp)
+{
+   const struct pipe_framebuffer_state *fb = &lp->framebuffer;
+   struct llvmpipe_screen *screen = llvmpipe_screen(lp->pipe.screen);
+
+   if (!debug_get_bool_option("LP_KBUF_TILE", true) ||
+       util_framebuffer_get_num_samples(fb) > 1 ||
+       (fb->zsbuf && llvmpipe_resource_is_1d(fb->zsbuf->texture)))
+      return false;
+
+   for (unsigned i = 0; i < fb->nr_cbufs; i++) {
+      if (fb->cbufs[i] && llvmpipe_resource_is_1d(fb->cbufs[i]->texture))
+         return false;
+   }
+
+   mtx_lock(&screen->rast_mutex);
+   const bool created = lp_kbuf_tiles_create(screen->rast);
+   mtx_unlock(&screen->rast_mutex);
+   return created;
 }
 
 
@@ -230,9 +265,8 @@ lp_kbuf_make_key(const struct llvmpipe_context *lp,
       return;
 
    key->kbuf.num_colors = program->num_colors;
-   key->kbuf.num_entries = MIN2(program->num_entries,
-                                lp->kbuf.num_color_buffers *
-                                num_layers(&lp->framebuffer));
+   key->kbuf.num_entries = num_entries(lp);
+   key->kbuf.tiled = use_tile(lp);
 
    lp_kbuf_static_samplers(&lp->kbuf, samplers);
    _mesa_sha1_init(&sha1);
@@ -298,6 +332,20 @@ lp_kbuf_update_scene(struct lp_setup_context *setup, bool new_scene)
             llvmpipe_layer_stride(surf->texture, surf->u.tex.level);
       }
    }
+
+   struct lp_kbuf_layout layout;
+   enum pipe_format formats[PIPE_MAX_COLOR_BUFS];
+   for (unsigned i = 0; i < setup->fb.nr_cbufs; i++) {
+      formats[i] = setup->fb.cbufs[i] ? setup->fb.cbufs[i]->format :
+                                        PIPE_FORMAT_NONE;
+   }
+   stored->tiled = use_tile(lp);
+   stored->num_entries = num_entries(lp);
+   stored->num_color_buffers = kbuf->num_color_buffers;
+   stored->written = kbuf->program->written;
+   lp_kbuf_layout_init(&layout, stored->num_entries, kbuf->num_color_buffers,
+                       formats, setup->fb.nr_cbufs);
+   stored->block_size = layout.size * LP_KBUF_WORD_SIZE;
 
    /* The reference keeps a display target mapped, not the resources. */
    bool referenced = true;

@@ -38,6 +38,7 @@ struct lp_kbuf_program
    struct nir_shader *nir;
    unsigned num_colors;   /**< last fragment color read, plus 1 */
    unsigned num_entries;  /**< last entry named, plus 1 */
+   uint64_t written;      /**< entries that are stored to */
    unsigned num_samplers; /**< last texture or sampler used, plus 1 */
    uint8_t sha1[20];
 };
@@ -59,6 +60,7 @@ struct lp_kbuf_key
 {
    uint8_t num_colors;  /**< fragment colors to keep for the program */
    uint8_t num_entries; /**< entries that exist, of those named */
+   bool tiled;          /**< works on the thread's copy, see lp_kbuf_tile.h */
    uint8_t sha1[20];    /**< program, layout, sampler and texture state */
 };
 
@@ -80,6 +82,13 @@ struct lp_jit_kbuf
 {
    uint64_t layer_stride[PIPE_MAX_COLOR_BUFS];
    struct lp_jit_kbuf_resources resources;
+
+   /* For lp_kbuf_tile.c only. */
+   bool tiled;
+   unsigned num_entries;
+   unsigned num_color_buffers;
+   unsigned block_size; /**< bytes of a block of the tile */
+   uint64_t written;
 };
 
 void

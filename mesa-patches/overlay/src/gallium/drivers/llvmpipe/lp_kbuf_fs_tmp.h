@@ -75,7 +75,9 @@ kbuf_position(struct gallivm_state *gallivm, const struct kbuf_fs_results *fs,
       pos[1] = LLVMBuildFAdd(builder, pos[1], shift, "");
    }
 
-   if (fs->z_out) {
+   /* Early tests used the interpolated depth, whatever the shader writes. */
+   if (fs->z_out && !fs->nir->info.fs.early_fragment_tests &&
+       !fs->nir->info.fs.post_depth_coverage) {
       pos[2] = kbuf_load_output(gallivm, fs, fs->z_out);
    } else if (key->multisample) {
       lp_build_interp_soa_update_pos_dyn(fs->interp, gallivm, fs->group,
@@ -123,6 +125,8 @@ generate_kbuf_stage(struct gallivm_state *gallivm,
                     const struct kbuf_fs_results *fs)
 {
    LLVMBuilderRef builder = gallivm->builder;
+   LLVMValueRef function =
+      LLVMGetBasicBlockParent(LLVMGetInsertBlock(builder));
    const struct lp_fragment_shader_variant_key *key = fs->key;
    struct lp_build_kbuf_params params = {
       .key = key,
@@ -134,6 +138,9 @@ generate_kbuf_stage(struct gallivm_state *gallivm,
       .thread_data_type = fs->thread_data_type,
       .thread_data_ptr = fs->thread_data_ptr,
       .group = fs->group,
+      /* See generate_fragment(). */
+      .x = LLVMGetParam(function, 2),
+      .y = LLVMGetParam(function, 3),
       .sample = fs->sample,
       .mask = fs->mask,
       .color_ptr_ptr = fs->color_ptr_ptr,
