@@ -309,9 +309,10 @@ store_entry(const struct lp_build_fs_iface *iface, unsigned entry,
             unsigned write_mask, const LLVMValueRef value[4])
 {
    struct kbuf_context *ctx = (struct kbuf_context *)iface;
-   const unsigned cbuf = entry % ctx->params->kbuf->num_color_buffers;
 
    if (ctx->pixels[entry].desc) {
+      const unsigned cbuf = entry % ctx->params->kbuf->num_color_buffers;
+
       lp_build_kbuf_store(&ctx->pixels[entry], lp_build_mask_value(&ctx->mask),
                           write_mask & ctx->params->key->blend.rt[cbuf].colormask,
                           value);

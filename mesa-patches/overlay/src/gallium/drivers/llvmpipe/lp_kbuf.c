@@ -27,6 +27,10 @@
 #include "lp_texture.h"
 
 
+/* Off: always work on the color buffers themselves. */
+DEBUG_GET_ONCE_BOOL_OPTION(kbuf_tile, "LP_KBUF_TILE", true)
+
+
 static void
 program_reference(struct lp_kbuf_program **ptr,
                   struct lp_kbuf_program *program)
@@ -226,7 +230,7 @@ use_tile(const struct llvmpipe_context *lp)
    const struct pipe_framebuffer_state *fb = &lp->framebuffer;
    struct llvmpipe_screen *screen = llvmpipe_screen(lp->pipe.screen);
 
-   if (!debug_get_bool_option("LP_KBUF_TILE", true) ||
+   if (!debug_get_option_kbuf_tile() ||
        util_framebuffer_get_num_samples(fb) > 1 ||
        (fb->zsbuf && llvmpipe_resource_is_1d(fb->zsbuf->texture)))
       return false;
