@@ -100,7 +100,7 @@ need_meson() {
             meson=("$candidate")
             return 0
         fi
-    done < <(type -ap meson)
+    done < <(type -ap meson || true)
     meson=("$python" "$tool/meson.py")
     [ ! -f "$tool/meson.py" ] || return 0
     say "Fetching Meson of $distribution_suite-backports into build/tools ($meson_needed is needed)"

@@ -75,3 +75,11 @@ test_interrupted_unpacking_is_resumed() {
     cp "$work/sound.sh" "$project/scripts/lib/common.sh"
     run 0 scripts/patch export "$work/series"
 }
+
+# Where Meson is too old and cannot be fetched, that is the one error.
+test_no_meson() {
+    run 1 env "${offline[@]}" APT_CONFIG="$work/apt.conf" bash -c '. scripts/lib/common.sh
+        . scripts/lib/packages.sh; . scripts/lib/source.sh; meson_needed=99; need_meson' scripts/build
+    prints "Meson 99 or newer is needed"
+    [[ $output != *"stopped at line"* ]]
+}
