@@ -60,6 +60,27 @@ TEST(BenchPlan, CombinesMethodsAndKs)
                                           "kbuffer-program/ours/4", "kbuffer-program/ours/32"}));
 }
 
+TEST(BenchPlan, KeepsEachMethodsLimit)
+{
+    const std::vector<std::string> names{"fbfetch"};
+    const std::vector ks{16, 17};
+    EXPECT_EQ(labels(plan_runs(names, ks)),
+              (std::multiset<std::string>{"zbuffer/stock/0", "fbfetch/stock/16"}));
+}
+
+TEST(BenchPlan, LabelsTellAllRunsApart)
+{
+    std::vector<std::string> names;
+    for (const Method &method : methods)
+        names.emplace_back(method.name);
+    const std::vector ks{4, 8};
+    std::set<std::string> seen;
+    for (const auto &run : plan_runs(names, ks))
+        EXPECT_TRUE(seen.insert(label(run)).second) << label(run);
+    EXPECT_EQ(label({"zbuffer", "", "stock", "", 0}), "zbuffer");
+    EXPECT_EQ(label({"k-plus", "unlocked", "stock", "", 8}), "k-plus-unlocked-8");
+}
+
 static Row make_row(const char *method, int k, double ms)
 {
     Row row;
@@ -81,16 +102,17 @@ TEST(BenchReport, JsonHasExactlyTheFieldsOfTheSchema)
     for (const auto &[name, value] : document.at("results").at(0).items())
         fields.insert(name);
     EXPECT_EQ(fields,
-              (std::set<std::string>{"scene", "method", "driver", "k", "passes", "triangles",
-                                     "fragments", "ms_median", "ms_p5", "ms_p95", "bytes_per_pixel",
-                                     "err_max", "err_rmse", "err_share"}));
+              (std::set<std::string>{"scene", "method", "variant", "driver", "k", "passes",
+                                     "triangles", "fragments", "ms_median", "ms_p5", "ms_p95",
+                                     "bytes_per_pixel", "err_max", "err_rmse", "err_share"}));
     EXPECT_EQ(document["results"][0]["ms_p95"], 3.0);
 }
 
 TEST(BenchReport, TableHasRatiosToBothBases)
 {
-    const std::vector rows{make_row("zbuffer", 0, 2.0), make_row("fbfetch", 4, 10.0),
-                           make_row("fbfetch", 8, 40.0), make_row("kbuffer-program", 4, 5.0)};
+    std::vector rows{make_row("zbuffer", 0, 2.0), make_row("fbfetch", 4, 10.0),
+                     make_row("fbfetch", 8, 40.0), make_row("kbuffer-program", 4, 5.0)};
+    rows.back().driver = "ours";
     const std::string table = to_table(rows);
     const std::string last = table.substr(table.rfind("quads"));
     EXPECT_NE(last.find(" 2.50 "), std::string::npos) << last; // to z-buffering

@@ -3,7 +3,7 @@
 // The scenes of the study are what their figures are quoted for: counts, extents, and the same on
 // every run.
 
-#include "scene.hpp"
+#include "study_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace kb::bench
 {
 
 /// The box of all vertices after the projection.
-static std::pair<glm::vec3, glm::vec3> box_in_view(const Scene &scene)
+static std::pair<glm::vec3, glm::vec3> box_in_view(const StudyScene &scene)
 {
     glm::vec3 low(1e30F);
     glm::vec3 high(-1e30F);
@@ -27,7 +27,7 @@ static std::pair<glm::vec3, glm::vec3> box_in_view(const Scene &scene)
     return {low, high};
 }
 
-static void expect_inside_view(const Scene &scene)
+static void expect_inside_view(const StudyScene &scene)
 {
     const auto [low, high] = box_in_view(scene);
     for (int axis = 0; axis < 3; ++axis) {
@@ -40,7 +40,7 @@ static void expect_inside_view(const Scene &scene)
 
 TEST(BenchScene, SpheresAreAMillionTriangles)
 {
-    const Scene scene = make_spheres();
+    const StudyScene scene = make_spheres();
     EXPECT_TRUE(check_mesh(scene.mesh));
     EXPECT_EQ(scene.mesh.triangle_count(), 300U * 2 * 42 * 40);
     expect_inside_view(scene);
@@ -48,7 +48,7 @@ TEST(BenchScene, SpheresAreAMillionTriangles)
 
 TEST(BenchScene, QuadsCoverTheSameHalfOfTheViewAtShuffledDistinctDepths)
 {
-    const Scene scene = make_quads();
+    const StudyScene scene = make_quads();
     ASSERT_TRUE(check_mesh(scene.mesh));
     ASSERT_EQ(scene.mesh.triangle_count(), 128U * 2);
     ASSERT_EQ(scene.mesh.positions.size(), 128U * 4);
@@ -72,7 +72,7 @@ TEST(BenchScene, QuadsCoverTheSameHalfOfTheViewAtShuffledDistinctDepths)
 TEST(BenchScene, GeneratedScenesAreTheSameEveryTime)
 {
     // Sums of what the seeds give, in double precision; a changed seed or generator changes them.
-    const auto sum = [](const Scene &scene) {
+    const auto sum = [](const StudyScene &scene) {
         double total = 0.0;
         for (const glm::vec4 &color : scene.mesh.colors)
             total += double(color.r) + 2.0 * double(color.g) + 3.0 * double(color.b) +
@@ -90,7 +90,7 @@ TEST(BenchScene, MeshesFillTheView)
     append_sphere(mesh, {10.0F, -20.0F, 30.0F}, 4.0F, glm::vec4(1.0F), 16, 8);
     append_quad(mesh, {5.0F, -20.0F, 30.0F}, {10.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F},
                 glm::vec4(1.0F));
-    const Scene scene = make_mesh_scene(mesh);
+    const StudyScene scene = make_mesh_scene(mesh);
     expect_inside_view(scene);
     const auto [low, high] = box_in_view(scene);
     EXPECT_NEAR(high.x - low.x, 2.0 / 1.01, 1e-5); // The wider side, with the margin of 1 %

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "mesh_buffers.hpp"
-#include "scene.hpp"
+#include "study_scene.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -25,7 +25,7 @@ T must(Result<T> result)
 class GlScene
 {
 public:
-    GlScene(const Gl &gl, const Scene &scene)
+    GlScene(const Gl &gl, const StudyScene &scene)
         : gl_(gl), mesh_(gl, scene.mesh), projection_(scene.projection)
     {
     }

@@ -12,32 +12,47 @@
 namespace kb::bench
 {
 
+/// A form of a method that is measured in rows of its own.
+struct Variant {
+    std::string_view name;        ///< Empty: the method as it is meant to be used.
+    std::string_view environment; ///< NAME=VALUE that its driver reads at the start, or empty.
+};
+
+inline constexpr std::array as_meant{Variant{}};
+
+/// The largest k of the study.
+inline constexpr int max_k = 64;
+
 struct Method {
     std::string_view name;
-    std::string_view driver; // "stock" or "ours"
-    bool takes_k;
+    std::string_view driver; ///< "stock" or "ours"
+    int max_k;               ///< 0: the method takes no k.
+    std::span<const Variant> variants = as_meant;
 };
 
-/// In the order of the report.
+/// In the order of the report. Framebuffer fetch reaches 8 color attachments, of RGBA32F, which
+/// hold two fragments each.
 inline constexpr std::array methods{
-    Method{"zbuffer", "stock", false},
-    Method{"classic-peeling", "stock", true},
-    Method{"fbfetch", "stock", true},
-    Method{"kbuffer-program", "ours", true},
+    Method{"zbuffer", "stock", 0},
+    Method{"classic-peeling", "stock", max_k},
+    Method{"fbfetch", "stock", 16},
+    Method{"kbuffer-program", "ours", max_k},
 };
 
-/// A method with its k (0 where it does not apply).
+/// A variant of a method with its k (0 where it does not apply).
 struct Run {
     std::string method;
+    std::string variant;
     std::string driver;
+    std::string environment;
     int k = 0;
 };
 
-/// Entries of RGBA32F hold two fragments each, and framebuffer fetch reaches 8 color attachments.
-inline constexpr int max_fbfetch_k = 16;
+/// What a run is called in file names and messages: "zbuffer", "fbfetch-8", "NAME-VARIANT-8".
+std::string label(const Run &run);
 
-/// All runs of the methods with these k, without those that a method cannot do. z-buffering is
-/// always among them: it is the base of the ratios.
+/// All runs of the methods, in all their variants, with these k, without those that a method cannot
+/// do. z-buffering is always among them: it is the base of the ratios.
 std::vector<Run> plan_runs(std::span<const std::string> names, std::span<const int> ks);
 
 } // namespace kb::bench

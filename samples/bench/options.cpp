@@ -3,7 +3,7 @@
 #include "options.hpp"
 
 #include "methods.hpp"
-#include "scene.hpp"
+#include "study_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -35,7 +35,9 @@ static CLI::Validator one_of(const std::vector<std::string> &names)
 
 std::optional<int> parse_options(CLI::App &app, Options &options, int argc, const char *const *argv)
 {
-    const std::vector<std::string> all_scenes(scene_names.begin(), scene_names.end());
+    std::vector<std::string> all_scenes;
+    for (const SceneEntry &scene : scenes)
+        all_scenes.emplace_back(scene.name);
     std::vector<std::string> all_methods;
     for (const Method &method : methods)
         all_methods.emplace_back(method.name);
@@ -53,12 +55,13 @@ std::optional<int> parse_options(CLI::App &app, Options &options, int argc, cons
         ->check(one_of(all_methods))
         ->type_name("NAME,...")
         ->default_str(joined(all_methods));
-    auto *ks = app.add_option("--k", options.ks,
-                              "Fragments kept of a pixel, 1 to 64 each (fbfetch: to 16)")
-                   ->delimiter(',')
-                   ->check(CLI::Range(1, 64).description(""))
-                   ->type_name("K,...")
-                   ->default_str("4,8,16");
+    auto *ks =
+        app.add_option("--k", options.ks,
+                       "Fragments kept of a pixel, 1 to 64 each (fbfetch: to 16); by default those "
+                       "that suit the scene, of 4, 8, 16 and 64")
+            ->delimiter(',')
+            ->check(CLI::Range(1, max_k).description(""))
+            ->type_name("K,...");
     auto *rounds = app.add_option("--rounds", options.rounds, "Frames measured of each method")
                        ->check(CLI::Range(1, 100000).description(""))
                        ->type_name("N")

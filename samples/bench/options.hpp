@@ -17,7 +17,7 @@ namespace kb::bench
 struct Options {
     std::vector<std::string> scenes;
     std::vector<std::string> methods;
-    std::vector<int> ks{4, 8, 16};
+    std::vector<int> ks; ///< Empty: those of each scene.
     int rounds = 15;
     Size size;
     std::filesystem::path stock = "build/stock-prefix";

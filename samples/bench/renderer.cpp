@@ -7,7 +7,9 @@
 namespace kb::bench
 {
 
-std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method, Size size, int k)
+std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method,
+                                        [[maybe_unused]] const std::string &variant, Size size,
+                                        int k)
 {
     if (method == "zbuffer")
         return make_zbuffer(gl, size);

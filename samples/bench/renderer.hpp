@@ -36,7 +36,9 @@ std::unique_ptr<Renderer> make_classic_peeling(const Gl &gl, Size size, int k);
 std::unique_ptr<Renderer> make_fbfetch(const Gl &gl, Size size, int k);
 std::unique_ptr<Renderer> make_kbuffer_program(const Gl &gl, Size size, int k);
 
-/// By the method's name in methods.hpp.
-std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method, Size size, int k);
+/// By the names of method and variant in methods.hpp. A variant that is a setting of the driver
+/// makes no difference here.
+std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method,
+                                        const std::string &variant, Size size, int k);
 
 } // namespace kb::bench

@@ -19,6 +19,7 @@ nlohmann::json to_json(const nlohmann::json &machine, std::span<const Row> rows)
     for (const Row &row : rows)
         results.push_back({{"scene", row.scene},
                            {"method", row.method},
+                           {"variant", row.variant},
                            {"driver", row.driver},
                            {"k", row.k},
                            {"passes", row.passes},
@@ -46,17 +47,17 @@ static std::string ratio(std::span<const Row> rows, const Row &row, std::string_
 std::string to_table(std::span<const Row> rows)
 {
     std::string table = fmt::format(
-        "{:<8} {:<16} {:>3} {:>6} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "scene",
-        "method", "k", "passes", "ms", "p5", "p95", "/zbuffer", "/fbfetch", "bytes/px", "err_max",
-        "err_rmse", "err_share");
+        "{:<8} {:<16} {:<10} {:>3} {:>6} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}\n",
+        "scene", "method", "variant", "k", "passes", "ms", "p5", "p95", "/zbuffer", "/fbfetch",
+        "bytes/px", "err_max", "err_rmse", "err_share");
     for (const Row &row : rows)
-        table +=
-            fmt::format("{:<8} {:<16} {:>3} {:>6} {:>9.2f} {:>9.2f} {:>9.2f} {:>8} {:>8} "
-                        "{:>8} {:>8.5f} {:>9.6f} {:>9.6f}\n",
-                        row.scene, row.method, row.k == 0 ? "-" : std::to_string(row.k), row.passes,
-                        row.ms.median, row.ms.p5, row.ms.p95, ratio(rows, row, "zbuffer", 0),
-                        row.method == "kbuffer-program" ? ratio(rows, row, "fbfetch", row.k) : "-",
-                        row.bytes_per_pixel, row.error.max, row.error.rmse, row.error.share);
+        table += fmt::format(
+            "{:<8} {:<16} {:<10} {:>3} {:>6} {:>9.2f} {:>9.2f} {:>9.2f} {:>8} {:>8} "
+            "{:>8} {:>8.5f} {:>9.6f} {:>9.6f}\n",
+            row.scene, row.method, row.variant, row.k == 0 ? "-" : std::to_string(row.k),
+            row.passes, row.ms.median, row.ms.p5, row.ms.p95, ratio(rows, row, "zbuffer", 0),
+            row.driver == "ours" ? ratio(rows, row, "fbfetch", row.k) : "-", row.bytes_per_pixel,
+            row.error.max, row.error.rmse, row.error.share);
     return table;
 }
 

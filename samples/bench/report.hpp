@@ -20,6 +20,7 @@ namespace kb::bench
 struct Row {
     std::string scene;
     std::string method;
+    std::string variant; ///< Empty: the method as it is meant to be used.
     std::string driver;
     int k = 0;
     int passes = 1; ///< Over the geometry.
@@ -32,7 +33,7 @@ struct Row {
 
 nlohmann::json to_json(const nlohmann::json &machine, std::span<const Row> rows);
 
-/// Each time also as a ratio to z-buffering, and that of a k-buffer program as a ratio to
+/// Each time also as a ratio to z-buffering, and those of the patched Mesa as ratios to
 /// framebuffer fetch with the same k.
 std::string to_table(std::span<const Row> rows);
 

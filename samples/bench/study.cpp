@@ -5,14 +5,18 @@
 #include "gl_scene.hpp"
 #include "machine.hpp"
 #include "methods.hpp"
+#include "study_scene.hpp"
 #include "temporary_folder.hpp"
 #include "worker_process.hpp"
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <utility>
 
 namespace kb::bench
 {
@@ -29,11 +33,6 @@ void progress(fmt::format_string<Arguments...> text, Arguments &&...arguments)
     std::fflush(stderr);
 }
 
-std::string label(const Run &run)
-{
-    return run.k == 0 ? run.method : fmt::format("{}-{}", run.method, run.k);
-}
-
 /// A run on the scene at hand.
 struct Active {
     Run run;
@@ -46,12 +45,13 @@ struct Active {
 class Runner
 {
 public:
-    explicit Runner(const Options &options)
-        : options_(options), runs_(plan_runs(options.methods, options.ks))
+    explicit Runner(const Options &options) : options_(options)
     {
-        start_worker("stock", options.stock);
-        if (std::ranges::any_of(runs_, [](const Run &run) { return run.driver == "ours"; }))
-            start_worker("ours", options.ours);
+        start_worker("stock", ""); // It makes the exact images, too.
+        for (const std::string &scene : options.scenes)
+            for (const Run &run : runs_of(scene))
+                if (!workers_.contains({run.driver, run.environment}))
+                    start_worker(run.driver, run.environment);
     }
 
     Study run()
@@ -69,10 +69,24 @@ public:
     }
 
 private:
-    void start_worker(const std::string &driver, const std::filesystem::path &prefix)
+    std::vector<int> ks_of(const std::string &scene) const
     {
-        const auto [place, added] =
-            workers_.emplace(driver, std::make_unique<WorkerProcess>(driver, prefix));
+        if (!options_.ks.empty())
+            return options_.ks;
+        const std::span<const int> ks = default_ks(scene);
+        return {ks.begin(), ks.end()};
+    }
+
+    std::vector<Run> runs_of(const std::string &scene) const
+    {
+        return plan_runs(options_.methods, ks_of(scene));
+    }
+
+    void start_worker(const std::string &driver, const std::string &setting)
+    {
+        const std::filesystem::path &prefix = driver == "ours" ? options_.ours : options_.stock;
+        const auto [place, added] = workers_.emplace(
+            std::pair(driver, setting), std::make_unique<WorkerProcess>(driver, prefix, setting));
         const json hello = place->second->ask({{"do", "hello"}});
         // The figures are worth nothing if both are the same driver.
         if (hello.at("kbuffer_program").get<bool>() != (driver == "ours"))
@@ -80,13 +94,14 @@ private:
                 fmt::format("the Mesa in {} {} GL_MESA_kbuffer_program", prefix.string(),
                             driver == "ours" ? "lacks" : "is to be stock, but has"));
         driver_names_[driver] = hello.at("driver").get<std::string>();
-        progress("{}: {}\n", driver, driver_names_[driver]);
+        progress("{}: {}{}{}\n", driver, driver_names_[driver], setting.empty() ? "" : ", ",
+                 setting);
     }
 
     void measure(const std::string &scene)
     {
         json about;
-        for (auto &[driver, worker] : workers_)
+        for (auto &[key, worker] : workers_)
             about = worker->ask({{"do", "scene"},
                                  {"name", scene},
                                  {"dragon", options_.dragon.string()},
@@ -95,7 +110,7 @@ private:
         const auto triangles = about.at("triangles").get<std::uint64_t>();
 
         progress("{}: {} triangles, capturing fragments for exact images\n", scene, triangles);
-        const json capture = capture_exact_images();
+        const json capture = capture_exact_images(ks_of(scene));
         about.update(capture);
         study_.machine["scenes"][scene] = about;
         progress("{}: {} fragments, depth complexity {}, {} pixels covered\n", scene,
@@ -104,12 +119,14 @@ private:
                  capture.at("covered_pixels").get<std::uint64_t>());
 
         std::vector<Active> active;
-        for (const Run &run : runs_) {
-            WorkerProcess &worker = *workers_.at(run.driver);
-            const json made = worker.ask({{"do", "method"}, {"method", run.method}, {"k", run.k}});
+        for (const Run &run : runs_of(scene)) {
+            WorkerProcess &worker = *workers_.at({run.driver, run.environment});
+            const json made = worker.ask(
+                {{"do", "method"}, {"method", run.method}, {"variant", run.variant}, {"k", run.k}});
             Row row;
             row.scene = scene;
             row.method = run.method;
+            row.variant = run.variant;
             row.driver = run.driver;
             row.k = run.k;
             row.passes = made.at("passes").get<int>();
@@ -121,16 +138,25 @@ private:
             active.back().row.error = error_of(active.back(), scene);
         }
         for (int round = 1; round <= options_.rounds; ++round) {
-            progress("\r{}: round {} of {}", scene, round, options_.rounds);
+            show_round(scene, round);
             for (Active &one : active)
                 one.times.push_back(
                     one.worker->ask({{"do", "frame"}, {"id", one.id}}).at("ms").get<double>());
         }
-        progress("\n");
         for (Active &one : active) {
             one.row.ms = spread_of(one.times);
             study_.rows.push_back(std::move(one.row));
         }
+    }
+
+    /// One line that moves on a terminal; in a log, a line every quarter of the way.
+    void show_round(const std::string &scene, int round) const
+    {
+        const int last = options_.rounds;
+        if (isatty(STDERR_FILENO) != 0)
+            progress("\r{}: round {} of {}{}", scene, round, last, round == last ? "\n" : "");
+        else if (round == last || (round - 1) * 4 / last != round * 4 / last)
+            progress("{}: round {} of {}\n", scene, round, last);
     }
 
     std::filesystem::path exact_path(int k) const
@@ -138,14 +164,13 @@ private:
         return folder_.path() / fmt::format("exact-{}.pfm", k);
     }
 
-    json capture_exact_images()
+    json capture_exact_images(std::vector<int> ks)
     {
-        std::vector<int> ks{0};
-        ks.insert(ks.end(), options_.ks.begin(), options_.ks.end());
+        ks.push_back(0); // for z-buffering
         std::vector<std::string> paths;
         for (const int k : ks)
             paths.push_back(exact_path(k).string());
-        return workers_.at("stock")->ask({{"do", "capture"}, {"ks", ks}, {"paths", paths}});
+        return workers_.at({"stock", ""})->ask({{"do", "capture"}, {"ks", ks}, {"paths", paths}});
     }
 
     Difference error_of(const Active &one, const std::string &scene) const
@@ -162,9 +187,9 @@ private:
     }
 
     const Options &options_;
-    std::vector<Run> runs_;
     TemporaryFolder folder_;
-    std::map<std::string, std::unique_ptr<WorkerProcess>> workers_;
+    /// By driver and setting.
+    std::map<std::pair<std::string, std::string>, std::unique_ptr<WorkerProcess>> workers_;
     std::map<std::string, std::string> driver_names_;
     Study study_;
 };

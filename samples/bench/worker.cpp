@@ -78,7 +78,7 @@ private:
                                      request.at("dragon").get<std::string>());
         if (!made)
             throw BadInput(made.error().message);
-        const Scene &scene = *made;
+        const StudyScene &scene = *made;
         scene_.emplace(gl_, scene);
         // Frames are timed into eight bits a channel, as a window has, and looked at in floats, so
         // that errors are the method's and not the window's.
@@ -104,7 +104,8 @@ private:
     json add_method(const json &request)
     {
         const auto method = request.at("method").get<std::string>();
-        renderers_.push_back(make_renderer(gl_, method, size_, request.at("k").get<int>()));
+        renderers_.push_back(make_renderer(gl_, method, request.at("variant").get<std::string>(),
+                                           size_, request.at("k").get<int>()));
         must(check_gl(gl_, "setting up " + method));
         return {{"id", renderers_.size() - 1},
                 {"passes", renderers_.back()->passes()},

@@ -14,7 +14,7 @@ namespace kb::bench
 ///   scene   {"name", "dragon", "width", "height"} -> {"triangles", "note"}
 ///   capture {"ks", "paths"} -> {"fragments", "depth_complexity", "covered_pixels"}
 ///           writes the exact image of each k to a PFM file
-///   method  {"method", "k"} -> {"id", "passes", "bytes_per_pixel"}
+///   method  {"method", "variant", "k"} -> {"id", "passes", "bytes_per_pixel"}
 ///   frame   {"id"} -> {"ms"}
 ///   image   {"id", "path"} -> {}
 ///           writes the image to a PFM file

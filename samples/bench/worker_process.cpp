@@ -40,16 +40,19 @@ Pipe make_pipe()
     return {File(fdopen(ends[0], "r")), File(fdopen(ends[1], "w"))};
 }
 
-std::vector<std::string> environment_of(const std::filesystem::path &prefix)
+std::vector<std::string> environment_of(const std::filesystem::path &prefix,
+                                        const std::string &setting)
 {
-    const std::array<std::string, 4> ours{
+    std::vector<std::string> environment{
         "LD_LIBRARY_PATH=" + library_folder(prefix).string(),
         "__GLX_VENDOR_LIBRARY_NAME=mesa",
         "__EGL_VENDOR_LIBRARY_FILENAMES=" +
             (prefix / "share/glvnd/egl_vendor.d/50_mesa.json").string(),
         "GALLIUM_DRIVER=llvmpipe",
     };
-    std::vector<std::string> environment(ours.begin(), ours.end());
+    if (!setting.empty())
+        environment.push_back(setting);
+    const std::vector<std::string> ours = environment;
     for (char **variable = environ; *variable != nullptr; ++variable) {
         const std::string text = *variable;
         const std::string name = text.substr(0, text.find('=') + 1);
@@ -104,7 +107,8 @@ std::filesystem::path library_folder(const std::filesystem::path &prefix)
         fmt::format("no Mesa in {}: run scripts/build --stock first", prefix.string()));
 }
 
-WorkerProcess::WorkerProcess(std::string driver, const std::filesystem::path &prefix)
+WorkerProcess::WorkerProcess(std::string driver, const std::filesystem::path &prefix,
+                             const std::string &setting)
     : driver_(std::move(driver))
 {
     // A worker that has died is reported by the answer that does not come.
@@ -117,7 +121,7 @@ WorkerProcess::WorkerProcess(std::string driver, const std::filesystem::path &pr
     posix_spawn_file_actions_adddup2(&actions, fileno(requests.read.get()), STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, fileno(answers.write.get()), STDOUT_FILENO);
 
-    std::vector<std::string> environment = environment_of(prefix);
+    std::vector<std::string> environment = environment_of(prefix, setting);
     std::vector<char *> environment_pointers;
     for (std::string &variable : environment)
         environment_pointers.push_back(variable.data());

@@ -40,8 +40,10 @@ public:
 class WorkerProcess
 {
 public:
-    /// Starts this very program again with --worker in the environment of the prefix.
-    WorkerProcess(std::string driver, const std::filesystem::path &prefix);
+    /// Starts this very program again with --worker in the environment of the prefix, and with one
+    /// more variable, NAME=VALUE, unless that is empty.
+    WorkerProcess(std::string driver, const std::filesystem::path &prefix,
+                  const std::string &setting = "");
     ~WorkerProcess();
     WorkerProcess(const WorkerProcess &) = delete;
     WorkerProcess &operator=(const WorkerProcess &) = delete;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "scene.hpp"
+#include "study_scene.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -62,10 +62,16 @@ glm::mat4 unit_view()
 
 } // namespace
 
-Scene make_spheres()
+std::span<const int> default_ks(std::string_view scene)
+{
+    const auto found = std::ranges::find(scenes, scene, &SceneEntry::name);
+    return found == scenes.end() ? std::span<const int>() : found->ks;
+}
+
+StudyScene make_spheres()
 {
     constexpr int count = 300;
-    Scene scene;
+    StudyScene scene;
     scene.projection = unit_view();
     Random random(20140531);
     for (int i = 0; i < count; ++i) {
@@ -77,10 +83,10 @@ Scene make_spheres()
     return scene;
 }
 
-Scene make_quads()
+StudyScene make_quads()
 {
     constexpr std::uint32_t count = 128;
-    Scene scene;
+    StudyScene scene;
     scene.projection = unit_view();
     Random random(20061106);
 
@@ -97,9 +103,9 @@ Scene make_quads()
     return scene;
 }
 
-Scene make_mesh_scene(Mesh mesh)
+StudyScene make_mesh_scene(Mesh mesh)
 {
-    Scene scene;
+    StudyScene scene;
     glm::vec3 low = mesh.positions.at(0);
     glm::vec3 high = low;
     for (const glm::vec3 &position : mesh.positions) {
@@ -123,7 +129,7 @@ Scene make_mesh_scene(Mesh mesh)
     return scene;
 }
 
-Result<Scene> make_scene(const std::string &name, const std::filesystem::path &dragon)
+Result<StudyScene> make_scene(const std::string &name, const std::filesystem::path &dragon)
 {
     if (name == "spheres")
         return make_spheres();
@@ -137,7 +143,7 @@ Result<Scene> make_scene(const std::string &name, const std::filesystem::path &d
             return mesh.error();
         return make_mesh_scene(*std::move(mesh));
     }
-    Scene scene = make_mesh_scene(make_knot(dragon_triangles));
+    StudyScene scene = make_mesh_scene(make_knot(dragon_triangles));
     scene.note =
         fmt::format("scene dragon is a generated knot instead: no file {}", dragon.string());
     return scene;
