@@ -29,8 +29,10 @@ def main():
     found = list(tests(source, build, runner))
     root = et.Element('PiglitTestList', count=str(len(found)), name='kbuffer')
     for name, command in found:
+        extension = 'depth_peeling' if name.startswith('peel-') else \
+            'kbuffer_program'
         test = et.SubElement(root, 'Test', type='gl',
-                             name='spec@mesa_kbuffer_program@' + name)
+                             name=f'spec@mesa_{extension}@{name}')
         et.SubElement(test, 'option', name='command', value=repr(command))
         # What may run beside others piglit starts with -fbo.
         et.SubElement(test, 'option', name='run_concurrent',

@@ -8,7 +8,8 @@
 /** What the running subtest has made. */
 #define MAX_OBJECTS 256
 static GLuint textures[MAX_OBJECTS], fbos[MAX_OBJECTS], programs[MAX_OBJECTS];
-static int num_textures, num_fbos, num_programs;
+static GLuint glsl_programs[MAX_OBJECTS];
+static int num_textures, num_fbos, num_programs, num_glsl_programs;
 
 static GLuint
 own(GLuint *list, int *num, GLuint name)
@@ -36,6 +37,12 @@ kb_new_framebuffer(void)
 
 	glGenFramebuffers(1, &name);
 	return own(fbos, &num_fbos, name);
+}
+
+GLuint
+kb_new_glsl_program(void)
+{
+	return own(glsl_programs, &num_glsl_programs, glCreateProgram());
 }
 
 GLenum
@@ -177,6 +184,8 @@ reset_context(void)
 	glBindFramebuffer(GL_FRAMEBUFFER, piglit_winsys_fbo);
 	glDeleteFramebuffers(num_fbos, fbos);
 	glDeleteTextures(num_textures, textures);
+	while (num_glsl_programs > 0)
+		glDeleteProgram(glsl_programs[--num_glsl_programs]);
 	num_programs = num_fbos = num_textures = 0;
 
 	glClampColor(GL_CLAMP_FRAGMENT_COLOR, GL_FIXED_ONLY);
@@ -188,7 +197,7 @@ reset_context(void)
 void
 piglit_init(int argc, char **argv)
 {
-	piglit_require_extension("GL_MESA_kbuffer_program");
+	piglit_require_extension(kb_extension);
 	printf("renderer: %s, %s\n", glGetString(GL_RENDERER),
 	       glGetString(GL_VERSION));
 	glPushAttrib(GL_ALL_ATTRIB_BITS);

@@ -22,7 +22,11 @@
 #define KB_MAX_ATTACHMENTS 8
 
 /** Every test of the extension ends with this. */
-#define KBUFFER_TEST(version)                                           \
+#define KBUFFER_TEST(version) KB_TEST(version, "GL_MESA_kbuffer_program")
+
+/** A test of \p extension. */
+#define KB_TEST(version, extension)                                     \
+	const char *const kb_extension = (extension);                   \
 	PIGLIT_GL_TEST_CONFIG_BEGIN                                     \
 		config.supports_gl_compat_version = (version);          \
 		config.window_width = 64;                               \
@@ -38,6 +42,7 @@
 #define KB_SUBTEST_END { NULL }
 
 extern const struct piglit_subtest kbuffer_subtests[];
+extern const char *const kb_extension;
 
 /** A framebuffer object whose color attachments are textures of one format. */
 struct kb {
@@ -55,6 +60,8 @@ GLuint
 kb_new_texture(void);
 GLuint
 kb_new_framebuffer(void);
+GLuint
+kb_new_glsl_program(void);
 
 /**
  * Make and bind a framebuffer with \p attachments color textures of
