@@ -4,12 +4,10 @@
 // one that the pass before it kept. Fragments of equal depth count as one: that is the method's own
 // error.
 
-#include "background.hpp"
+#include "layer_resolve.hpp"
 #include "renderer.hpp"
 
 #include <array>
-
-#include <fmt/format.h>
 
 namespace kb::bench
 {
@@ -40,24 +38,7 @@ void main()
     color = shade();
 }
 )")),
-          resolve_(make_view_program(gl, fmt::format(R"(
-uniform sampler2DArray layers;
-out vec4 color;
-
-void main()
-{{
-    vec3 sum = vec3(0.0);
-    float transmittance = 1.0;
-    for (int layer = 0; layer < {}; ++layer) {{
-        vec4 fragment = texelFetch(layers, ivec3(gl_FragCoord.xy, layer), 0);
-        sum += transmittance * fragment.a * fragment.rgb;
-        transmittance *= 1.0 - fragment.a;
-    }}
-    color = vec4(sum + transmittance * {}, 1.0);
-}}
-)",
-                                                     k, background_glsl()))),
-          empty_(gl), framebuffer_(gl),
+          resolve_(gl, k), framebuffer_(gl),
           layers_(make_texture_2d_array(gl, GL_RGBA8, size.width, size.height, k)),
           depths_{make_texture_2d(gl, GL_DEPTH_COMPONENT32F, size.width, size.height),
                   make_texture_2d(gl, GL_DEPTH_COMPONENT32F, size.width, size.height)}
@@ -74,10 +55,7 @@ void main()
             peel(scene, pass);
         gl_.Disable(GL_DEPTH_TEST);
 
-        gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
-        gl_.BindTexture(GL_TEXTURE_2D_ARRAY, layers_.id());
-        resolve_.use();
-        draw_full_screen(gl_, empty_);
+        resolve_.draw(layers_, target);
     }
 
     int passes() const override { return k_; }
@@ -104,8 +82,7 @@ private:
     int k_;
     Program first_;
     Program next_;
-    Program resolve_;
-    VertexArray empty_;
+    LayerResolve resolve_;
     Framebuffer framebuffer_;
     Texture layers_;
     std::array<Texture, 2> depths_;

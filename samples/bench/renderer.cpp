@@ -19,6 +19,8 @@ std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method,
         return make_fbfetch(gl, size, k);
     if (method == "kbuffer-program")
         return make_kbuffer_program(gl, size, k);
+    if (method == "depth-peeling")
+        return make_depth_peeling(gl, size, k);
     throw std::invalid_argument("no method is called " + method);
 }
 

@@ -35,6 +35,7 @@ std::unique_ptr<Renderer> make_zbuffer(const Gl &gl, Size size);
 std::unique_ptr<Renderer> make_classic_peeling(const Gl &gl, Size size, int k);
 std::unique_ptr<Renderer> make_fbfetch(const Gl &gl, Size size, int k);
 std::unique_ptr<Renderer> make_kbuffer_program(const Gl &gl, Size size, int k);
+std::unique_ptr<Renderer> make_depth_peeling(const Gl &gl, Size size, int k);
 
 /// By the names of method and variant in methods.hpp. A variant that is a setting of the driver
 /// makes no difference here.
