@@ -89,6 +89,7 @@ static Row make_row(const char *method, int k, double ms)
     row.driver = "stock";
     row.k = k;
     row.ms = {ms, ms - 1.0, ms + 1.0};
+    row.ratio = {ms / 2.0, ms / 2.5, ms / 1.5}; // z-buffering takes 2 ms
     return row;
 }
 
@@ -104,7 +105,8 @@ TEST(BenchReport, JsonHasExactlyTheFieldsOfTheSchema)
     EXPECT_EQ(fields,
               (std::set<std::string>{"scene", "method", "variant", "driver", "k", "passes",
                                      "triangles", "fragments", "ms_median", "ms_p5", "ms_p95",
-                                     "bytes_per_pixel", "err_max", "err_rmse", "err_share"}));
+                                     "bytes_per_pixel", "err_max", "err_rmse", "err_share",
+                                     "err_all_max", "err_all_rmse", "err_all_share"}));
     EXPECT_EQ(document["results"][0]["ms_p95"], 3.0);
 }
 

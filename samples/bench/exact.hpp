@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <limits>
 #include <span>
 
 namespace kb::bench
@@ -20,6 +21,9 @@ struct Fragment {
 
 /// What shines through where transparency ends.
 inline constexpr glm::dvec3 background{0.16, 0.18, 0.22};
+
+/// The k of a picture of all fragments.
+inline constexpr int all_fragments = std::numeric_limits<int>::max();
 
 /// Nearest first; fragments of equal depth stay in order of arrival.
 void sort_by_depth(std::span<Fragment> fragments);

@@ -78,6 +78,8 @@ std::optional<int> parse_options(CLI::App &app, Options &options, int argc, cons
     path_option("--out", options.out, "File for the results");
     path_option("--pictures", options.pictures, "Folder for a picture of each scene and method");
     app.add_flag("--quick", options.quick, "A smoke run: 3 rounds of k = 4 at 256x256");
+    app.add_option("--commit", options.commit, "The project's commit, for the record")
+        ->type_name("NAME");
     app.add_flag("--worker", options.worker)->group(""); // Not for users.
 
     if (const auto status = parse_command_line(app, argc, argv))

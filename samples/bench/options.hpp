@@ -25,6 +25,7 @@ struct Options {
     std::filesystem::path dragon = "build/data/dragon.ply";
     std::filesystem::path out = "build/report/results.json";
     std::filesystem::path pictures; ///< Folder for the picture of each row, or empty for none.
+    std::string commit;             ///< Of the project, for the record.
     bool quick = false;
     bool worker = false; ///< This process is one of the two that draw.
 };

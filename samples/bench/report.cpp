@@ -28,18 +28,24 @@ nlohmann::json to_json(const nlohmann::json &machine, std::span<const Row> rows)
                            {"ms_median", row.ms.median},
                            {"ms_p5", row.ms.p5},
                            {"ms_p95", row.ms.p95},
+                           {"ratio_median", row.ratio.median},
+                           {"ratio_p5", row.ratio.p5},
+                           {"ratio_p95", row.ratio.p95},
                            {"bytes_per_pixel", row.bytes_per_pixel},
                            {"err_max", row.error.max},
                            {"err_rmse", row.error.rmse},
-                           {"err_share", row.error.share}});
+                           {"err_share", row.error.share},
+                           {"err_all_max", row.error_all.max},
+                           {"err_all_rmse", row.error_all.rmse},
+                           {"err_all_share", row.error_all.share}});
     return {{"machine", machine}, {"results", results}};
 }
 
-/// The median as a ratio to that of another method on the same scene, or "-" without such a row.
-static std::string ratio(std::span<const Row> rows, const Row &row, std::string_view base, int k)
+/// The median as a ratio to that of framebuffer fetch with the same k, or "-" without such a row.
+static std::string ratio_to_fbfetch(std::span<const Row> rows, const Row &row)
 {
     const auto found = std::ranges::find_if(rows, [&](const Row &other) {
-        return other.scene == row.scene && other.method == base && other.k == k;
+        return other.scene == row.scene && other.method == "fbfetch" && other.k == row.k;
     });
     return found == rows.end() ? "-" : fmt::format("{:.2f}", row.ms.median / found->ms.median);
 }
@@ -52,11 +58,11 @@ std::string to_table(std::span<const Row> rows)
         "bytes/px", "err_max", "err_rmse", "err_share");
     for (const Row &row : rows)
         table += fmt::format(
-            "{:<8} {:<16} {:<10} {:>3} {:>6} {:>9.2f} {:>9.2f} {:>9.2f} {:>8} {:>8} "
+            "{:<8} {:<16} {:<10} {:>3} {:>6} {:>9.2f} {:>9.2f} {:>9.2f} {:>8.2f} {:>8} "
             "{:>8} {:>8.5f} {:>9.6f} {:>9.6f}\n",
             row.scene, row.method, row.variant, row.k == 0 ? "-" : std::to_string(row.k),
-            row.passes, row.ms.median, row.ms.p5, row.ms.p95, ratio(rows, row, "zbuffer", 0),
-            row.driver == "ours" ? ratio(rows, row, "fbfetch", row.k) : "-", row.bytes_per_pixel,
+            row.passes, row.ms.median, row.ms.p5, row.ms.p95, row.ratio.median,
+            row.driver == "ours" ? ratio_to_fbfetch(rows, row) : "-", row.bytes_per_pixel,
             row.error.max, row.error.rmse, row.error.share);
     return table;
 }

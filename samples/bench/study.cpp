@@ -2,6 +2,7 @@
 
 #include "study.hpp"
 
+#include "exact.hpp"
 #include "gl_scene.hpp"
 #include "machine.hpp"
 #include "methods.hpp"
@@ -15,6 +16,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -31,6 +34,14 @@ void progress(fmt::format_string<Arguments...> text, Arguments &&...arguments)
 {
     fmt::print(stderr, text, std::forward<Arguments>(arguments)...);
     std::fflush(stderr);
+}
+
+/// Quotients round by round: what slows a whole round down does not show in them.
+std::vector<double> ratios(const std::vector<double> &times, const std::vector<double> &base)
+{
+    std::vector<double> quotients;
+    std::ranges::transform(times, base, std::back_inserter(quotients), std::divides{});
+    return quotients;
 }
 
 /// A run on the scene at hand.
@@ -59,6 +70,7 @@ public:
         study_.machine = describe_machine();
         for (const auto &[driver, name] : driver_names_)
             study_.machine["driver_" + driver] = name;
+        study_.machine["commit"] = options_.commit;
         study_.machine["width"] = options_.size.width;
         study_.machine["height"] = options_.size.height;
         study_.machine["rounds"] = options_.rounds;
@@ -135,7 +147,7 @@ private:
             row.fragments = capture.at("fragments").get<std::uint64_t>();
             active.push_back({run, &worker, made.at("id").get<int>(), std::move(row), {}});
             // Compiles its shaders too, before frames are measured.
-            active.back().row.error = error_of(active.back(), scene);
+            find_errors(active.back());
         }
         for (int round = 1; round <= options_.rounds; ++round) {
             show_round(scene, round);
@@ -145,6 +157,7 @@ private:
         }
         for (Active &one : active) {
             one.row.ms = spread_of(one.times);
+            one.row.ratio = spread_of(ratios(one.times, active.front().times));
             study_.rows.push_back(std::move(one.row));
         }
     }
@@ -166,24 +179,28 @@ private:
 
     json capture_exact_images(std::vector<int> ks)
     {
-        ks.push_back(0); // for z-buffering
+        ks.insert(ks.end(), {0, all_fragments}); // 0: for z-buffering
         std::vector<std::string> paths;
         for (const int k : ks)
             paths.push_back(exact_path(k).string());
         return workers_.at({"stock", ""})->ask({{"do", "capture"}, {"ks", ks}, {"paths", paths}});
     }
 
-    Difference error_of(const Active &one, const std::string &scene) const
+    void find_errors(Active &one) const
     {
         const std::filesystem::path path = folder_.path() / "image.pfm";
         one.worker->ask({{"do", "image"}, {"id", one.id}, {"path", path.string()}});
         const ImageRgbaF image = must(read_pfm(path));
         if (!options_.pictures.empty()) {
-            must(write_png(options_.pictures / fmt::format("{}-{}.png", scene, label(one.run)),
+            must(write_png(options_.pictures /
+                               fmt::format("{}-{}.png", one.row.scene, label(one.run)),
                            to_rgba8(image)));
         }
         // Eight-bit colors are off by 1/255 at most; as floats, by a rounding more.
-        return must(compare(image, must(read_pfm(exact_path(one.run.k))), 1.0 / 255.0 + 1e-6));
+        constexpr double tolerance = 1.0 / 255.0 + 1e-6;
+        one.row.error = must(compare(image, must(read_pfm(exact_path(one.run.k))), tolerance));
+        one.row.error_all =
+            must(compare(image, must(read_pfm(exact_path(all_fragments))), tolerance));
     }
 
     const Options &options_;
