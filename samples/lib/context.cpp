@@ -26,14 +26,23 @@ Result<std::unique_ptr<Context>> make_context(const std::string &kind, Size size
     return Error{fmt::format("no such context: {} (osmesa, egl or glfw)", kind)};
 }
 
+static Status require_extension(const Gl &gl, std::string_view name)
+{
+    if (has_extension(gl, name))
+        return ok;
+    return Error{fmt::format("this driver has no {} ({}): start the program by scripts/run, or set "
+                             "LD_LIBRARY_PATH to the patched Mesa's libraries",
+                             name, describe_driver(gl))};
+}
+
 Status require_kbuffer_program(const Gl &gl)
 {
-    if (has_extension(gl, "GL_MESA_kbuffer_program"))
-        return ok;
-    return Error{
-        fmt::format("this driver has no GL_MESA_kbuffer_program ({}): start the program by "
-                    "scripts/run, or set LD_LIBRARY_PATH to the patched Mesa's libraries",
-                    describe_driver(gl))};
+    return require_extension(gl, "GL_MESA_kbuffer_program");
+}
+
+Status require_depth_peeling(const Gl &gl)
+{
+    return require_extension(gl, "GL_MESA_depth_peeling");
 }
 
 } // namespace kb

@@ -38,7 +38,8 @@ protected:
 Result<std::unique_ptr<Context>> make_context(const std::string &kind, Size size = {},
                                               const std::string &title = "kbuffer");
 
-/// An error that says how to get a driver with GL_MESA_kbuffer_program, unless this is one.
+/// An error that says how to get a driver with the extension, unless this is one.
 Status require_kbuffer_program(const Gl &gl);
+Status require_depth_peeling(const Gl &gl);
 
 } // namespace kb

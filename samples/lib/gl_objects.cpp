@@ -55,6 +55,26 @@ Texture make_texture_2d_array(const Gl &gl, GLenum internal_format, int width, i
     return texture;
 }
 
+Texture make_texture_2d_multisample(const Gl &gl, GLenum internal_format, int samples, int width,
+                                    int height)
+{
+    Texture texture(gl);
+    gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, texture.id());
+    gl.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples, internal_format, width, height,
+                             GL_TRUE);
+    return texture;
+}
+
+Texture make_texture_2d_multisample_array(const Gl &gl, GLenum internal_format, int samples,
+                                          int width, int height, int layers)
+{
+    Texture texture(gl);
+    gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE_ARRAY, texture.id());
+    gl.TexImage3DMultisample(GL_TEXTURE_2D_MULTISAMPLE_ARRAY, samples, internal_format, width,
+                             height, layers, GL_TRUE);
+    return texture;
+}
+
 Status check_framebuffer(const Gl &gl)
 {
     // First what may have made it incomplete, most likely a lack of memory.

@@ -52,6 +52,12 @@ Texture make_texture_2d(const Gl &gl, GLenum internal_format, int width, int hei
 Texture make_texture_2d_array(const Gl &gl, GLenum internal_format, int width, int height,
                               int layers);
 
+/// The same with a number of samples a pixel.
+Texture make_texture_2d_multisample(const Gl &gl, GLenum internal_format, int samples, int width,
+                                    int height);
+Texture make_texture_2d_multisample_array(const Gl &gl, GLenum internal_format, int samples,
+                                          int width, int height, int layers);
+
 /// An error unless the framebuffer bound for drawing is complete.
 Status check_framebuffer(const Gl &gl);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Exact order-independent transparency: the k nearest fragments of each pixel are captured in ONE
-// pass over the geometry by a k-buffer program, then composed front to back.
+// pass over the geometry by a k-buffer program, or by depth peeling, then composed front to back.
 //
-//     declare what is captured   make_insertion_program (samples/programs)
-//     draw                       KBufferMethod::capture
+//     declare what is captured   make_insertion_program (samples/programs), PeelingLayers
+//     draw                       KBufferMethod::capture, PeelingMethod::capture
 //     resolve                    ResolvePass
 
 #include "command_line.hpp"
@@ -12,6 +12,7 @@
 #include "kbuffer.hpp"
 #include "method.hpp"
 #include "output.hpp"
+#include "scene_options.hpp"
 #include "timing.hpp"
 
 #include <fmt/format.h>
@@ -23,31 +24,24 @@ namespace
 {
 
 struct Options {
-    std::string mesh;
-    int triangles = 100000;
+    kb::SceneOptions scene;
     std::string method = "kbuffer";
     std::string layout = "packed";
     std::string context = "osmesa";
     int k = 8;
     int repeat = 1;
-    std::optional<float> alpha;
     kb::Size size;
-    kb::OrbitCamera camera;
     kb::OutputPaths outputs;
 };
 
 void declare_options(CLI::App &app, Options &options)
 {
-    app.add_option("--mesh", options.mesh,
-                   "OBJ, PLY, STL or glTF 2.0 file; without, a knot is generated")
-        ->type_name("FILE");
-    app.add_option("--triangles", options.triangles, "Size of the generated knot")
-        ->check(CLI::Range(100, 10'000'000))
-        ->type_name("N")
-        ->capture_default_str();
+    kb::add_scene_options(app, options.scene,
+                          "Alpha of all fragments, 0 to 1, instead of the mesh's (rgbz: 0.4)");
     app.add_option("--method", options.method,
-                   "kbuffer (one pass), classic-peeling (k passes) or unsorted (wrong, one pass)")
-        ->check(CLI::IsMember({"kbuffer", "classic-peeling", "unsorted"}))
+                   "kbuffer (one pass, a k-buffer program), peeling (one pass, "
+                   "GL_DEPTH_PEELING), classic-peeling (k passes) or unsorted (wrong, one pass)")
+        ->check(CLI::IsMember({"kbuffer", "peeling", "classic-peeling", "unsorted"}))
         ->type_name("NAME")
         ->capture_default_str();
     app.add_option("--k", options.k, "Layers to keep, 1 to 64")
@@ -60,18 +54,8 @@ void declare_options(CLI::App &app, Options &options)
         ->check(CLI::IsMember({"packed", "rgbz"}))
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_option("--alpha", options.alpha,
-                   "Alpha of all fragments, 0 to 1, instead of the mesh's (rgbz: 0.4)")
-        ->check([](const std::string &text) { return kb::check_number(text, 0.0, 1.0); })
-        ->type_name("A");
     kb::add_context_option(app, options.context);
     kb::add_size_option(app, options.size);
-    app.add_option("--azimuth", options.camera.azimuth, "Degrees about the vertical axis")
-        ->check([](const std::string &text) { return kb::check_number(text, -360.0, 360.0); })
-        ->type_name("DEG");
-    app.add_option("--elevation", options.camera.elevation, "Degrees from above")
-        ->check([](const std::string &text) { return kb::check_number(text, -90.0, 90.0); })
-        ->type_name("DEG");
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")
         ->check(CLI::Range(1, 10'000))
         ->type_name("N");
@@ -89,8 +73,10 @@ kb::Result<std::unique_ptr<kb::Method>> make_method(const kb::Gl &gl, const Opti
     method.size = options.size;
     method.k = options.k;
     method.layout = layout;
-    method.alpha = options.alpha.value_or(method.alpha);
+    method.alpha = options.scene.alpha.value_or(method.alpha);
     if (options.method == "classic-peeling")
+        return kb::make_classic_peeling_method(gl, method);
+    if (options.method == "peeling")
         return kb::make_peeling_method(gl, method);
     if (options.method == "unsorted")
         return kb::make_unsorted_method(gl, method);
@@ -119,7 +105,8 @@ std::optional<Failure> run(Options options, const kb::Mesh &mesh, kb::EntryLayou
 
     // RGBZ keeps no alpha: all fragments must have the one that the resolve pass uses.
     const bool rgbz = layout == kb::EntryLayout::rgbz;
-    const kb::Scene scene(gl, mesh, rgbz ? options.alpha.value_or(0.4F) : options.alpha);
+    const kb::Scene scene(gl, mesh,
+                          rgbz ? options.scene.alpha.value_or(0.4F) : options.scene.alpha);
     const kb::Texture picture =
         kb::make_texture_2d(gl, GL_RGBA32F, options.size.width, options.size.height);
     const kb::Framebuffer framebuffer(gl);
@@ -129,7 +116,7 @@ std::optional<Failure> run(Options options, const kb::Mesh &mesh, kb::EntryLayou
         return lacking(complete.error());
 
     const auto draw = [&] {
-        (*method)->capture(scene, options.camera);
+        (*method)->capture(scene, options.scene.camera);
         (*method)->resolve(framebuffer.id());
     };
     std::vector<double> times;
@@ -152,7 +139,7 @@ std::optional<Failure> run(Options options, const kb::Mesh &mesh, kb::EntryLayou
                (*method)->geometry_passes() == 1 ? "" : "es", scene.triangle_count(),
                (*method)->bytes_per_pixel());
 
-    while ((*context)->present(framebuffer.id(), options.size, options.camera))
+    while ((*context)->present(framebuffer.id(), options.size, options.scene.camera))
         draw();
     return std::nullopt;
 }
@@ -163,8 +150,8 @@ int main(int argc, char **argv)
 {
     Options options;
     CLI::App app("Draws a translucent mesh: the k nearest fragments of each pixel are captured in "
-                 "one pass by\na k-buffer program (GL_MESA_kbuffer_program) and composed front to "
-                 "back.",
+                 "one pass by\na k-buffer program (GL_MESA_kbuffer_program) or by depth peeling "
+                 "(GL_MESA_depth_peeling)\nand composed front to back.",
                  "transparency");
     declare_options(app, options);
     if (const auto status = kb::parse_command_line(app, argc, argv))
@@ -176,12 +163,9 @@ int main(int argc, char **argv)
     if (options.method == "unsorted" && !options.outputs.layers.empty())
         return kb::fail(app, kb::Error{"--layers-out: the method unsorted keeps no layers"},
                         kb::exit_bad_input);
-    auto mesh = options.mesh.empty()
-                    ? kb::Result(kb::make_knot(static_cast<std::size_t>(options.triangles)))
-                    : kb::load_mesh(options.mesh);
+    const auto mesh = kb::make_mesh(options.scene);
     if (!mesh)
         return kb::fail(app, mesh.error(), kb::exit_bad_input);
-    kb::fit_to_unit_sphere(*mesh);
     if (auto writable = kb::check_writable(options.outputs); !writable)
         return kb::fail(app, writable.error(), kb::exit_bad_input);
 

@@ -50,8 +50,12 @@ public:
 /// "kbuffer": one pass, GL_MESA_kbuffer_program.
 Result<std::unique_ptr<Method>> make_kbuffer_method(const Gl &gl, const MethodOptions &options);
 
-/// "classic-peeling": k passes, each keeps the nearest fragments behind those of the last one.
+/// "peeling": one pass, GL_MESA_depth_peeling.
 Result<std::unique_ptr<Method>> make_peeling_method(const Gl &gl, const MethodOptions &options);
+
+/// "classic-peeling": k passes, each keeps the nearest fragments behind those of the last one.
+Result<std::unique_ptr<Method>> make_classic_peeling_method(const Gl &gl,
+                                                            const MethodOptions &options);
 
 /// "unsorted": one pass of blending in the order of drawing, which is wrong.
 Result<std::unique_ptr<Method>> make_unsorted_method(const Gl &gl, const MethodOptions &options);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include "command_line.hpp"
+#include "depth_peeling.hpp"
+#include "scene_options.hpp"
+
+#include <string>
+
+namespace kb
+{
+
+struct PeelingOptions {
+    SceneOptions scene;
+    PeelingLayers layers;
+    bool all = false;
+    int repeat = 1;
+    std::string context = "osmesa";
+    std::string directory; ///< Empty: no pictures are written.
+    bool floats = false;
+};
+
+void declare_options(CLI::App &app, PeelingOptions &options);
+
+/// What no single option can know.
+Status check_options(const PeelingOptions &options);
+
+} // namespace kb
