@@ -75,6 +75,81 @@ TEST(CommandLine, TransparencyRefusesBadInput)
                    "directory");
 }
 
+TEST(CommandLine, PeelingRefusesBadInput)
+{
+    const TempDirectory directory;
+    const std::string out = directory / "layers";
+    const std::string empty = directory.write("empty.ply", "");
+    const struct {
+        std::vector<std::string> arguments;
+        std::string mention;
+    } cases[] = {
+        {{"--k", "0"}, "--k"},
+        {{"--k", "-3"}, "--k"},
+        {{"--k", "4096"}, "--k"},
+        {{"--k", "1.5"}, "--k"},
+        {{"--func", "always"}, "--func"},
+        {{"--func", ""}, "--func"},
+        {{"--all", "--func", "lequal"}, "--func less or greater"},
+        {{"--all", "--func", "gequal"}, "--func less or greater"},
+        {{"--depth-format", "8"}, "--depth-format"},
+        {{"--color-format", "64"}, "--color-format"},
+        {{"--samples", "2"}, "--samples"},
+        {{"--samples", "-4"}, "--samples"},
+        {{"--size", "0x0"}, "--size"},
+        {{"--alpha", "nan"}, "--alpha"},
+        {{"--azimuth", "inf"}, "--azimuth"},
+        {{"--repeat", "0"}, "--repeat"},
+        {{"--context", "vulkan"}, "--context"},
+        {{"--all=maybe"}, "--all"},
+        {{"stray"}, "stray"},
+        {{"--mesh", "/no/such/mesh.ply"}, "/no/such/mesh.ply: no such file"},
+        {{"--mesh", empty}, "it is empty"},
+    };
+    for (const auto &c : cases) {
+        SCOPED_TRACE(testing::PrintToString(c.arguments));
+        std::vector<std::string> command{KBUFFER_PEELING, "--out-dir", out};
+        command.insert(command.end(), c.arguments.begin(), c.arguments.end());
+        expect_refused(run(command, mesa_environment(patched_prefix())), "peeling", c.mention);
+        EXPECT_EQ(directory.file_count(), 1U) << "something was written";
+    }
+    expect_refused(run({KBUFFER_PEELING, "--out-dir", empty}), "peeling", "not a directory");
+    expect_refused(run({KBUFFER_PEELING, "--out-dir", empty + "/in/it"}), "peeling",
+                   "not a directory");
+    expect_refused(run({KBUFFER_PEELING, "--floats"}), "peeling", "--out-dir");
+}
+
+TEST(CommandLine, PeelingSaysWhatTheDriverLacks)
+{
+    const TempDirectory directory;
+    auto environment = mesa_environment(patched_prefix());
+    const std::string out = directory / "layers";
+    expect_refused(run({KBUFFER_PEELING, "--out-dir", out, "--k", "257"}, environment), "peeling",
+                   "the driver has 1 to 256", 1);
+    expect_refused(
+        run({KBUFFER_PEELING, "--out-dir", out, "--k", "256", "--size", "8192x8192"}, environment),
+        "peeling", "OUT_OF_MEMORY", 1);
+    environment["GALLIUM_DRIVER"] = "softpipe";
+    expect_refused(run({KBUFFER_PEELING, "--out-dir", out, "--samples", "4"}, environment),
+                   "peeling", "samples are wanted", 1);
+    EXPECT_EQ(directory.file_count(), 0U) << "something was written";
+}
+
+TEST(CommandLine, PeelingWorksOtherwise)
+{
+    const TempDirectory directory;
+    const auto result = run({KBUFFER_PEELING, "--out-dir", directory / "new/layers", "--size",
+                             "16x16", "--triangles", "100", "--k", "2", "--all"},
+                            mesa_environment(patched_prefix()));
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_EQ(result.out.find("pass 1: layers 0 to 1, "), 0U) << result.out;
+    EXPECT_NE(result.out.find("\npass 2: layers 2 to 3, "), std::string::npos) << result.out;
+    EXPECT_TRUE(std::filesystem::exists(directory / "new/layers/picture.png"));
+    EXPECT_TRUE(std::filesystem::exists(directory / "new/layers/layer-002.png"));
+    EXPECT_FALSE(std::filesystem::exists(directory / "new/layers/layer-000.pfm"));
+}
+
 TEST(CommandLine, TransparencyWorksOtherwise)
 {
     const TempDirectory directory;
@@ -95,12 +170,20 @@ TEST(CommandLine, MissingExtensionSaysWhatToDo)
     expect_refused(run({KBUFFER_TRANSPARENCY, "--out", directory / "out.png"}, environment),
                    "transparency", "scripts/run", 1);
     expect_refused(run({KBUFFER_HELLO}, environment), "hello-kbuffer", "scripts/run", 1);
+    environment["MESA_EXTENSION_OVERRIDE"] = "-GL_MESA_depth_peeling";
+    expect_refused(
+        run({KBUFFER_TRANSPARENCY, "--method", "peeling", "--out", directory / "out.png"},
+            environment),
+        "transparency", "GL_MESA_depth_peeling", 1);
+    expect_refused(run({KBUFFER_PEELING, "--out-dir", directory / "out"}, environment), "peeling",
+                   "scripts/run", 1);
+    expect_refused(run({KBUFFER_HELLO_PEELING}, environment), "hello-peeling", "scripts/run", 1);
     EXPECT_EQ(directory.file_count(), 0U);
 }
 
 TEST(CommandLine, HelpIsNoError)
 {
-    for (const char *program : {KBUFFER_TRANSPARENCY, KBUFFER_PROGRAM_TOOL}) {
+    for (const char *program : {KBUFFER_TRANSPARENCY, KBUFFER_PEELING, KBUFFER_PROGRAM_TOOL}) {
         const auto result = run({program, "--help"});
         EXPECT_EQ(result.status, 0);
         EXPECT_NE(result.out.find("--k"), std::string::npos);
@@ -137,6 +220,17 @@ TEST(CommandLine, HelloKBufferFindsWhatItExpects)
         const auto result = run({KBUFFER_HELLO}, environment);
         EXPECT_EQ(result.status, 0) << result.err;
         EXPECT_EQ(result.out, "expected 0.625 0.375 0.250, got 0.625 0.375 0.250\n");
+    }
+}
+
+TEST(CommandLine, HelloPeelingFindsWhatItExpects)
+{
+    for (const char *driver : {"llvmpipe", "softpipe"}) {
+        auto environment = mesa_environment(patched_prefix());
+        environment["GALLIUM_DRIVER"] = driver;
+        const auto result = run({KBUFFER_HELLO_PEELING}, environment);
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_EQ(result.out, "expected 0.625 0.375 0.250, got 0.625 0.375 0.250 in 2 passes\n");
     }
 }
 

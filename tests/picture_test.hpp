@@ -41,6 +41,16 @@ private:
     int renderings_ = 0;
 };
 
+/// A picture of write_plane_stack and the depths of its layers.
+struct LayeredPicture {
+    const ImageRgbaF &picture;
+    const std::vector<ImageRgbaF> &depths;
+};
+
+/// Two drivers agree on a stack of as many planes as layers, away from the planes' edges.
+void expect_agreement_inside_of_faces(const LayeredPicture &a, const LayeredPicture &b,
+                                      std::size_t layers);
+
 /// Skips a test that compares with stock Mesa where there is none.
 #define KB_NEED_STOCK()                                                                            \
     if (kb::test::stock_prefix().empty())                                                          \

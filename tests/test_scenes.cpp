@@ -114,6 +114,23 @@ void write_tied_soup(const std::filesystem::path &path, int triangles, unsigned 
     soup.write(path);
 }
 
+void write_coincident_quads(const std::filesystem::path &path, int quads, unsigned seed)
+{
+    Soup soup(seed);
+    const auto add_quad = [&soup](float z) {
+        const glm::vec3 a(-0.7F, -0.6F, z);
+        const glm::vec3 b(0.8F, -0.5F, z);
+        const glm::vec3 c(0.6F, 0.7F, z);
+        const glm::vec3 d(-0.7F, 0.5F, z);
+        soup.add({a, b, c});
+        soup.add({a, c, d});
+    };
+    add_quad(-0.3F);
+    for (int i = 0; i < quads; ++i)
+        add_quad(0.2F);
+    soup.write(path);
+}
+
 void write_plane_stack(const std::filesystem::path &path, int planes, unsigned seed)
 {
     Soup soup(seed);

@@ -16,6 +16,9 @@ void write_triangle_soup(const std::filesystem::path &path, int triangles, unsig
 /// over.
 void write_tied_soup(const std::filesystem::path &path, int triangles, unsigned seed);
 
+/// Quads in one plane, all with the same corners, each in another color; and one behind them.
+void write_coincident_quads(const std::filesystem::path &path, int quads, unsigned seed);
+
 /// Parallel quads, shuffled, each turned about the common axis by some angle and of one color: none
 /// cut another.
 void write_plane_stack(const std::filesystem::path &path, int planes, unsigned seed);
