@@ -58,13 +58,13 @@ peel_use_program(struct peel *p, const char *declarations,
 		 const char *statements)
 {
 	static const char vs[] =
-		"#version 130\n"
+		"#version 150 compatibility\n"
 		"in vec4 position;\nin uint vertex_id;\n"
 		"flat out uint id;\n"
 		"void main() { gl_Position = position; id = vertex_id; }\n";
 	/* As in peel-formats.c. */
 	static const char head[] =
-		"#version 130\n"
+		"#version 150 compatibility\n"
 		"#extension GL_ARB_explicit_attrib_location: require\n"
 		"%s"
 		"flat in uint id;\n"
@@ -178,5 +178,20 @@ peel_shuffle(struct peel_quad *quads, int n)
 
 		quads[i] = quads[j];
 		quads[j] = q;
+	}
+}
+
+void
+peel_random_triangles(struct peel_vertex *vertices, int n, uint32_t first)
+{
+	for (int i = 0; i < 3 * n; i++) {
+		const float w = 1 + peel_random(1000) / 1000.;
+
+		/* Some reach out of the depth range and are clipped. */
+		vertices[i] = (struct peel_vertex) {
+			(peel_random(2400) - 1200) / 1000. * w,
+			(peel_random(2400) - 1200) / 1000. * w,
+			(peel_random(1100) - 50) / 1000. * w, w, first + i / 3
+		};
 	}
 }

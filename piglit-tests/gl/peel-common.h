@@ -69,7 +69,7 @@ peel_unpack_depth(const struct peel_format *format, const void *texel);
  * from peel_depth(), or 0 or 1.
  */
 uint32_t
-peel_depth_code(const struct peel_format *format, float z);
+peel_depth_code(const struct peel_format *format, double z);
 
 /** A depth that is stored as the code, whether stored by rounding or not. */
 float
@@ -242,5 +242,12 @@ peel_random(int below);
 /** Bring the elements of an array into random order. */
 void
 peel_shuffle(struct peel_quad *quads, int n);
+
+/**
+ * \p n random triangles, some partly outside of the viewport, with perspective
+ * and slanted depths; ids from \p first on.
+ */
+void
+peel_random_triangles(struct peel_vertex *vertices, int n, uint32_t first);
 
 #endif /* PEEL_COMMON_H */

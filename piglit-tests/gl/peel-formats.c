@@ -184,16 +184,17 @@ peel_unpack_depth(const struct peel_format *format, const void *texel)
 }
 
 uint32_t
-peel_depth_code(const struct peel_format *format, float z)
+peel_depth_code(const struct peel_format *format, double z)
 {
 	z = CLAMP(z, 0, 1);
 	if (format->bits[0] == 32) {
+		const float value = z;
 		uint32_t code;
 
-		memcpy(&code, &z, 4);
+		memcpy(&code, &value, 4);
 		return code;
 	}
-	return (double)z * peel_max_depth(format);
+	return z * peel_max_depth(format);
 }
 
 float

@@ -24,13 +24,13 @@ static struct state
 get_state(const struct peel *p)
 {
 	struct state s;
-	GLfloat clear;
+	GLdouble clear;
 
 	glGetIntegerv(GL_DEPTH_FUNC, &s.func);
 	glGetBooleanv(GL_DEPTH_WRITEMASK, &s.depth_mask);
 	for (int i = 0; i < PEEL_MAX_COLORS; i++)
 		glGetBooleani_v(GL_COLOR_WRITEMASK, i, s.color_mask[i]);
-	glGetFloatv(GL_DEPTH_CLEAR_VALUE, &clear);
+	glGetDoublev(GL_DEPTH_CLEAR_VALUE, &clear);
 	s.empty = peel_depth_code(p->depth, clear);
 	s.scissored = glIsEnabled(GL_SCISSOR_TEST);
 	glGetIntegerv(GL_SCISSOR_BOX, s.scissor);

@@ -1,0 +1,183 @@
+/*
+ * Copyright © 2026 The mesa-kbuffer authors
+ * SPDX-License-Identifier: MIT
+ */
+
+/**
+ * \file peel-depth-formats.c
+ * The depth that counts is the one that is stored: every depth format keeps
+ * neighbouring depths apart and in order, depths that it stores as one are
+ * ties, and stencil bits stay.
+ */
+
+#include "peel-common.h"
+
+#define K 16
+
+static struct peel
+make(GLenum format, int layers)
+{
+	return peel_create(&(struct peel_shape) {
+		layers, 17, 10, 0, format, { GL_R32UI } });
+}
+
+/** Depths one code apart, from both ends and around the middle. */
+static enum piglit_result
+neighbours(void *data)
+{
+	const GLenum format = *(const GLenum *)data;
+	const struct peel_format *f = peel_format(format);
+	/* No denormals; .25, .5 and .75 are where the steps of floats change. */
+	const uint32_t smallest = f->bits[0] == 32 ? 0x00800000 : 1;
+	const uint32_t starts[] = {
+		smallest, peel_depth_code(f, .25) - K / 2,
+		peel_depth_code(f, .5) - K / 2, peel_depth_code(f, .75),
+		peel_max_depth(f) - K,
+	};
+	bool pass = true;
+
+	for (int s = 0; s < 2 * ARRAY_SIZE(starts) && pass; s++) {
+		struct peel p = make(format, K);
+		struct peel_quad quads[K];
+
+		peel_seed(s);
+		glDepthFunc(s % 2 ? GL_GREATER : GL_LESS);
+		glClearDepth(s % 2 ? 0 : 1);
+		peel_clear(&p);
+		for (int i = 0; i < K; i++)
+			quads[i] = peel_full(&p, peel_depth(f, starts[s / 2] +
+							    i), i);
+		peel_shuffle(quads, K);
+		peel_draw(&p, quads, K);
+		pass = peel_check_ranks(&p, quads, K) && peel_check(&p);
+		/* All of them, none merged with another. */
+		for (int i = 0; i + 1 < K && pass; i++)
+			pass = p.model.depth[i] != p.model.depth[i + 1];
+		if (!pass)
+			printf("neighbours of %08x\n", starts[s / 2]);
+		peel_end(&p, pass);
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/**
+ * Depths that differ but are stored as one code keep the order of arrival,
+ * and none is lost: 8 planes for each code, farthest first.
+ */
+static enum piglit_result
+merged(void *data)
+{
+	const GLenum format = *(const GLenum *)data;
+	struct peel p = make(format, 32);
+	const uint32_t codes = peel_max_depth(p.depth);
+	struct peel_quad quads[32];
+	bool pass;
+
+	for (int i = 0; i < 32; i++) {
+		const uint32_t code = codes / 3 + i % 4;
+
+		/* Between 0.1 and 0.4 of a code above it. */
+		quads[i] = peel_full(&p, (code + .4 - i / 4 * .04) / codes, i);
+	}
+	peel_draw(&p, quads, 32);
+	pass = peel_check_ranks(&p, quads, 32) && peel_check(&p);
+	return peel_end(&p, pass);
+}
+
+static bool
+check_stencil(const struct peel *p, const uint8_t *values)
+{
+	const int words = peel_texel_size(p->depth) / 4;
+	const int area = p->width * p->height;
+	uint32_t *texels = malloc(area * p->layers * words * 4);
+	bool pass = true;
+
+	glBindTexture(GL_TEXTURE_2D_ARRAY, p->depth_tex);
+	glGetTexImage(GL_TEXTURE_2D_ARRAY, 0, p->depth->format, p->depth->type,
+		      texels);
+	for (int i = 0; i < area * p->layers && pass; i++) {
+		const uint32_t stencil = texels[i * words + words - 1] & 0xff;
+		const uint8_t expected = values[i / area];
+
+		/* 24 bits of the layer's depth are above, or nothing. */
+		pass = stencil == expected;
+		if (!pass)
+			printf("stencil of layer %d at (%d, %d) is %02x, not "
+			       "%02x\n", i / area, i % p->width,
+			       i % area / p->width, stencil, expected);
+	}
+	free(texels);
+	return pass;
+}
+
+static enum piglit_result
+stencil(void *data)
+{
+	struct peel p = make(*(const GLenum *)data, 4);
+	const uint8_t values[] = { 0x5a, 0xff, 0x00, 0xa5 };
+	struct peel_quad quads[7];
+	bool pass;
+
+	/* A value for each layer. */
+	for (int l = 0; l < 4; l++) {
+		GLuint fbo = kb_new_framebuffer();
+
+		glBindFramebuffer(GL_FRAMEBUFFER, fbo);
+		glFramebufferTextureLayer(GL_FRAMEBUFFER,
+					  GL_DEPTH_STENCIL_ATTACHMENT,
+					  p.depth_tex, 0, l);
+		glClearStencil(values[l]);
+		glClear(GL_STENCIL_BUFFER_BIT);
+	}
+	glBindFramebuffer(GL_FRAMEBUFFER, p.fbo);
+	/* Not the stencil test: that would be an error. */
+	glStencilOp(GL_ZERO, GL_INCR, GL_INVERT);
+	peel_seed(3);
+	for (int i = 0; i < 7; i++) {
+		quads[i] = peel_full(&p, (i + 1) / 8., i);
+		quads[i].x1 -= peel_random(8);
+	}
+	peel_shuffle(quads, 7);
+	peel_draw(&p, quads, 7);
+	pass = check_stencil(&p, values) && peel_check_ranks(&p, quads, 7) &&
+		peel_check(&p);
+	/* Clearing the depth does not touch it either. */
+	peel_clear(&p);
+	pass = pass && check_stencil(&p, values);
+	return peel_end(&p, pass);
+}
+
+/** Slanted depths, as the format rounds them for the depth test. */
+static enum piglit_result
+slanted(void *data)
+{
+	struct peel p = make(*(const GLenum *)data, 5);
+	struct peel_vertex vertices[3 * 12];
+
+	peel_seed(9);
+	peel_random_triangles(vertices, 12, 1);
+	peel_draw_captured(&p, GL_TRIANGLES, vertices, 3 * 12);
+	return peel_end(&p, peel_check(&p));
+}
+
+static const GLenum d16 = GL_DEPTH_COMPONENT16, d24 = GL_DEPTH_COMPONENT24,
+	d24s8 = GL_DEPTH24_STENCIL8, d32f = GL_DEPTH_COMPONENT32F,
+	d32fs8 = GL_DEPTH32F_STENCIL8;
+
+#define FORMAT(name, format)                                            \
+	KB_SUBTEST(name "-neighbours", neighbours, format),             \
+	KB_SUBTEST(name "-slanted", slanted, format)
+
+const struct piglit_subtest kbuffer_subtests[] = {
+	FORMAT("16", &d16),
+	FORMAT("24", &d24),
+	FORMAT("24-8", &d24s8),
+	FORMAT("32f", &d32f),
+	FORMAT("32f-8", &d32fs8),
+	KB_SUBTEST("16-merged", merged, &d16),
+	KB_SUBTEST("24-8-stencil", stencil, &d24s8),
+	KB_SUBTEST("32f-8-stencil", stencil, &d32fs8),
+	KB_SUBTEST_END
+};
+
+PEEL_TEST(32)
