@@ -449,6 +449,37 @@ decode_channel(const struct lp_kbuf_pixels *pixels,
 }
 
 
+/** Integers are in the guise of floats.  They are clamped. */
+static LLVMValueRef
+encode_integer(const struct lp_kbuf_pixels *pixels,
+               const struct util_format_channel_description *chan,
+               LLVMValueRef value)
+{
+   struct gallivm_state *gallivm = pixels->gallivm;
+   LLVMBuilderRef builder = gallivm->builder;
+   const bool sign = chan->type == UTIL_FORMAT_TYPE_SIGNED;
+   struct lp_type type = lp_int_type(pixels->type);
+   struct lp_build_context bld;
+
+   type.sign = sign;
+   lp_build_context_init(&bld, gallivm, type);
+   value = LLVMBuildBitCast(builder, value, bld.vec_type, "");
+   if (chan->size == 32)
+      return value;
+
+   const uint32_t mask = (1u << chan->size) - 1;
+   const int32_t max = sign ? mask >> 1 : mask;
+   value = lp_build_min(&bld, value, lp_build_const_int_vec(gallivm, type, max));
+   if (sign) {
+      value = lp_build_max(&bld, value,
+                           lp_build_const_int_vec(gallivm, type, -max - 1));
+      value = LLVMBuildAnd(builder, value,
+                           lp_build_const_int_vec(gallivm, type, mask), "");
+   }
+   return value;
+}
+
+
 /** The channel's bits, at bit 0 of a word. */
 static LLVMValueRef
 encode_channel(const struct lp_kbuf_pixels *pixels,
@@ -463,6 +494,9 @@ encode_channel(const struct lp_kbuf_pixels *pixels,
    struct lp_build_context bld;
 
    lp_build_context_init(&bld, gallivm, type);
+
+   if (chan->pure_integer)
+      return encode_integer(pixels, chan, value);
 
    switch (chan->type) {
    case UTIL_FORMAT_TYPE_UNSIGNED:
@@ -554,56 +588,91 @@ component_channel(const struct util_format_description *desc, unsigned comp)
 }
 
 
-void
-lp_build_kbuf_store(const struct lp_kbuf_pixels *pixels,
-                    LLVMValueRef mask, unsigned write_mask,
-                    const LLVMValueRef rgba[4])
+static const struct util_format_channel_description r11g11b10_channels[3] = {
+   { .size = 11, .shift = 0 },
+   { .size = 11, .shift = 11 },
+   { .size = 10, .shift = 22 },
+};
+
+
+/** The same for formats of which the description does not tell. */
+static const struct util_format_channel_description *
+stored_channel(const struct util_format_description *desc, unsigned comp)
 {
-   static const struct util_format_channel_description r11g11b10[3] = {
-      { .size = 11, .shift = 0 },
-      { .size = 11, .shift = 11 },
-      { .size = 10, .shift = 22 },
-   };
+   if (desc->format == PIPE_FORMAT_R11G11B10_FLOAT)
+      return comp < 3 ? &r11g11b10_channels[comp] : NULL;
+   return component_channel(desc, comp);
+}
+
+
+void
+lp_kbuf_format_bits(const struct util_format_description *desc,
+                    unsigned write_mask, uint32_t *bits)
+{
+   memset(bits, 0, DIV_ROUND_UP(desc->block.bits, 32) * sizeof *bits);
+   for (unsigned comp = 0; comp < 4; comp++) {
+      const struct util_format_channel_description *chan =
+         stored_channel(desc, comp);
+
+      if (chan && write_mask & (1 << comp))
+         bits[chan->shift / 32] |= u_bit_consecutive(chan->shift % 32, chan->size);
+   }
+}
+
+
+void
+lp_build_kbuf_encode(const struct lp_kbuf_pixels *pixels, unsigned write_mask,
+                     const LLVMValueRef rgba[4], LLVMValueRef *words)
+{
    const struct util_format_description *desc = pixels->desc;
    struct gallivm_state *gallivm = pixels->gallivm;
    LLVMBuilderRef builder = gallivm->builder;
-   LLVMValueRef words[4] = { NULL };
-   uint32_t bits[4] = { 0 };
-   const bool r11 = desc->format == PIPE_FORMAT_R11G11B10_FLOAT;
-   const bool srgb = desc->colorspace == UTIL_FORMAT_COLORSPACE_SRGB;
 
-   if (r11) {
+   if (desc->format == PIPE_FORMAT_R11G11B10_FLOAT) {
       words[0] = lp_build_float_to_r11g11b10(gallivm, rgba);
-   } else if (srgb) {
+      return;
+   }
+   if (desc->colorspace == UTIL_FORMAT_COLORSPACE_SRGB) {
       LLVMValueRef src[4] = { rgba[0], rgba[1], rgba[2], rgba[3] };
       words[0] = lp_build_float_to_srgb_packed(gallivm, desc, pixels->type, src);
+      return;
    }
+
+   for (unsigned w = 0; w < num_words(pixels); w++)
+      words[w] = LLVMConstNull(int_type(pixels, 32, pixels->type.length));
 
    for (unsigned comp = 0; comp < 4; comp++) {
       const struct util_format_channel_description *chan =
-         r11 ? (comp < 3 ? &r11g11b10[comp] : NULL) :
-               component_channel(desc, comp);
+         component_channel(desc, comp);
 
       if (!chan || !(write_mask & (1 << comp)))
          continue;
 
-      const unsigned w = chan->shift / 32, start = chan->shift % 32;
-      bits[w] |= u_bit_consecutive(start, chan->size);
-      if (r11 || srgb)
-         continue;
-
       LLVMValueRef value = encode_channel(pixels, chan, rgba[comp]);
+      const unsigned w = chan->shift / 32, start = chan->shift % 32;
       if (start) {
          value = LLVMBuildShl(builder, value,
                               lp_build_const_int_vec(gallivm, lp_int_type(pixels->type),
                                                      start), "");
       }
-      words[w] = words[w] ? LLVMBuildOr(builder, words[w], value, "") : value;
+      words[w] = LLVMBuildOr(builder, words[w], value, "");
    }
+}
 
+
+void
+lp_build_kbuf_store(const struct lp_kbuf_pixels *pixels,
+                    LLVMValueRef mask, unsigned write_mask,
+                    const LLVMValueRef rgba[4])
+{
+   LLVMValueRef words[4];
+   uint32_t bits[4] = { 0 };
+
+   lp_kbuf_format_bits(pixels->desc, write_mask, bits);
    if (!(bits[0] | bits[1] | bits[2] | bits[3]))
       return;
 
+   lp_build_kbuf_encode(pixels, write_mask, rgba, words);
    if (num_words(pixels) > 2 && !pixels->words)
       store_words_aos(pixels, mask, words, bits);
    else

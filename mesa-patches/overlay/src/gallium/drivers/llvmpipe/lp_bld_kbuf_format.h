@@ -42,6 +42,16 @@ lp_kbuf_format_needs_denormals(const struct util_format_description *desc);
 void
 lp_build_kbuf_load(const struct lp_kbuf_pixels *pixels, LLVMValueRef rgba[4]);
 
+/** The bits of a pixel's words that hold the components of write_mask. */
+void
+lp_kbuf_format_bits(const struct util_format_description *desc,
+                    unsigned write_mask, uint32_t *bits);
+
+/** Those bits; others are anything.  Uses neither rows nor words of pixels. */
+void
+lp_build_kbuf_encode(const struct lp_kbuf_pixels *pixels, unsigned write_mask,
+                     const LLVMValueRef rgba[4], LLVMValueRef *words);
+
 /**
  * Store the components of write_mask in the lanes of mask; all other bits
  * keep their values.

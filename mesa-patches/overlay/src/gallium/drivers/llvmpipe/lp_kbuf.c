@@ -130,6 +130,10 @@ llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
 
    program_reference(&kbuf->program, state ? state->program : NULL);
    kbuf->num_color_buffers = state ? state->num_color_buffers : 0;
+   if (state)
+      kbuf->peel = state->peel;
+   else
+      memset(&kbuf->peel, 0, sizeof kbuf->peel);
 
    for (unsigned i = 0; i < MAX2(num_views, kbuf->num_sampler_views); i++) {
       struct pipe_sampler_view *view =

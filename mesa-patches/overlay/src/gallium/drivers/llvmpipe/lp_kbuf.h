@@ -22,6 +22,8 @@
 #include "util/u_inlines.h"
 #include "gallivm/lp_bld_jit_types.h"
 
+#include "lp_peel.h"
+
 struct llvmpipe_context;
 struct lp_fragment_shader_variant_key;
 struct lp_sampler_static_state;
@@ -53,6 +55,7 @@ struct lp_kbuf_state
    unsigned num_sampler_views;
    struct pipe_sampler_view *sampler_views[PIPE_MAX_SAMPLERS];
    struct pipe_sampler_state samplers[PIPE_MAX_SAMPLERS];
+   struct pipe_peel_state peel;
 };
 
 /** What the generated code depends on.  All zero when the stage is off. */
@@ -62,6 +65,7 @@ struct lp_kbuf_key
    uint8_t num_entries; /**< entries that exist, of those named */
    bool tiled;          /**< works on the thread's copy, see lp_kbuf_tile.h */
    uint8_t sha1[20];    /**< program, layout, sampler and texture state */
+   struct lp_peel_key peel;
 };
 
 /**

@@ -52,6 +52,21 @@ kbuf_load_output(struct gallivm_state *gallivm,
 }
 
 
+/** The depth that the fragment stage left, before it is clamped. */
+static LLVMValueRef
+kbuf_depth(struct gallivm_state *gallivm, const struct kbuf_fs_results *fs)
+{
+   /* Early tests used the interpolated depth, whatever the shader writes. */
+   if (fs->z_out && !fs->nir->info.fs.early_fragment_tests &&
+       !fs->nir->info.fs.post_depth_coverage)
+      return kbuf_load_output(gallivm, fs, fs->z_out);
+
+   lp_build_interp_soa_update_pos_dyn(fs->interp, gallivm, fs->group,
+                                      fs->key->multisample ? fs->sample : NULL);
+   return fs->interp->pos[2];
+}
+
+
 /**
  * Window x, y of the pixel's center and 1/w there; the depth that the
  * fragment stage left, which is the sample's.
@@ -75,19 +90,10 @@ kbuf_position(struct gallivm_state *gallivm, const struct kbuf_fs_results *fs,
       pos[1] = LLVMBuildFAdd(builder, pos[1], shift, "");
    }
 
-   /* Early tests used the interpolated depth, whatever the shader writes. */
-   if (fs->z_out && !fs->nir->info.fs.early_fragment_tests &&
-       !fs->nir->info.fs.post_depth_coverage) {
-      pos[2] = kbuf_load_output(gallivm, fs, fs->z_out);
-   } else if (key->multisample) {
-      lp_build_interp_soa_update_pos_dyn(fs->interp, gallivm, fs->group,
-                                         fs->sample);
-      pos[2] = fs->interp->pos[2];
-   }
    pos[2] = lp_build_depth_clamp(gallivm, builder, key->depth_clamp, true,
                                  fs->type, fs->context_type, fs->context_ptr,
                                  fs->thread_data_type, fs->thread_data_ptr,
-                                 pos[2]);
+                                 kbuf_depth(gallivm, fs));
 }
 
 
@@ -98,11 +104,21 @@ kbuf_colors(struct gallivm_state *gallivm, const struct kbuf_fs_results *fs,
    for (unsigned i = 0; i < fs->key->kbuf.num_colors; i++) {
       const bool written =
          find_output_by_frag_result(fs->nir, FRAG_RESULT_DATA0 + i) != -1;
+      const bool integer =
+         util_format_is_pure_integer(fs->key->cbuf_format[i]);
 
       for (unsigned chan = 0; chan < 4; chan++) {
-         if (written && !(chan == 3 && fs->key->blend.alpha_to_one)) {
+         if (written &&
+             !(chan == 3 && fs->key->blend.alpha_to_one && !integer)) {
             colors[i][chan] = kbuf_load_output(gallivm, fs,
                                                fs->out_color[i][chan]);
+         } else if (integer) {
+            colors[i][chan] =
+               LLVMBuildBitCast(gallivm->builder,
+                                lp_build_const_int_vec(gallivm,
+                                                       lp_int_type(fs->type),
+                                                       chan == 3),
+                                lp_build_vec_type(gallivm, fs->type), "");
          } else {
             colors[i][chan] = lp_build_const_vec(gallivm, fs->type, chan == 3);
          }
@@ -111,25 +127,58 @@ kbuf_colors(struct gallivm_state *gallivm, const struct kbuf_fs_results *fs,
 }
 
 
+/** Runs the stage once; see generate_kbuf_stage(). */
+typedef LLVMValueRef
+(*kbuf_stage_func)(struct gallivm_state *gallivm,
+                   const struct lp_build_kbuf_params *params);
+
+
 /**
  * Run the stage for a group of fragments, or for one sample of them.
  *
  * A multisample framebuffer that is drawn to without multisampling gets every
  * fragment in all of its samples.
  *
- * \return the lanes with a fragment that the program did not discard, in any
- *         of these samples
+ * \return what the function does, of any of these samples
  */
 static LLVMValueRef
-generate_kbuf_stage(struct gallivm_state *gallivm,
-                    const struct kbuf_fs_results *fs)
+kbuf_run_stage(struct gallivm_state *gallivm,
+               struct lp_build_kbuf_params *params,
+               unsigned num_samples, kbuf_stage_func func)
 {
    LLVMBuilderRef builder = gallivm->builder;
+
+   if (params->key->multisample || num_samples == 1)
+      return func(gallivm, params);
+
+   LLVMTypeRef mask_type = lp_build_int_vec_type(gallivm, params->type);
+   LLVMValueRef alive = lp_build_alloca(gallivm, mask_type, "kbuf_alive");
+   struct lp_build_for_loop_state loop;
+
+   LLVMBuildStore(builder, LLVMConstNull(mask_type), alive);
+   lp_build_for_loop_begin(&loop, gallivm, lp_build_const_int32(gallivm, 0),
+                           LLVMIntULT,
+                           lp_build_const_int32(gallivm, num_samples),
+                           lp_build_const_int32(gallivm, 1));
+   params->sample = loop.counter;
+   LLVMValueRef sample_alive = func(gallivm, params);
+   LLVMValueRef any = LLVMBuildLoad2(builder, mask_type, alive, "");
+   LLVMBuildStore(builder, LLVMBuildOr(builder, any, sample_alive, ""), alive);
+   lp_build_for_loop_end(&loop);
+
+   return LLVMBuildLoad2(builder, mask_type, alive, "");
+}
+
+
+/** What is the same for all that stands in the place of blending. */
+static struct lp_build_kbuf_params
+kbuf_stage_params(struct gallivm_state *gallivm,
+                  const struct kbuf_fs_results *fs)
+{
    LLVMValueRef function =
-      LLVMGetBasicBlockParent(LLVMGetInsertBlock(builder));
-   const struct lp_fragment_shader_variant_key *key = fs->key;
+      LLVMGetBasicBlockParent(LLVMGetInsertBlock(gallivm->builder));
    struct lp_build_kbuf_params params = {
-      .key = key,
+      .key = fs->key,
       .kbuf = fs->kbuf,
       .type = fs->type,
       .context_type = fs->context_type,
@@ -147,30 +196,22 @@ generate_kbuf_stage(struct gallivm_state *gallivm,
       .color_stride_ptr = fs->color_stride_ptr,
       .color_sample_stride_ptr = fs->color_sample_stride_ptr,
    };
+
+   kbuf_colors(gallivm, fs, params.colors);
+   return params;
+}
+
+
+/** \return the lanes with a fragment that the program did not discard */
+static LLVMValueRef
+generate_kbuf_stage(struct gallivm_state *gallivm,
+                    const struct kbuf_fs_results *fs)
+{
+   struct lp_build_kbuf_params params = kbuf_stage_params(gallivm, fs);
    unsigned num_samples = 1;
 
    kbuf_position(gallivm, fs, params.pos);
-   kbuf_colors(gallivm, fs, params.colors);
-
-   for (unsigned i = 0; i < key->nr_cbufs; i++)
-      num_samples = MAX2(num_samples, key->cbuf_nr_samples[i]);
-   if (key->multisample || num_samples == 1)
-      return lp_build_kbuf_stage(gallivm, &params);
-
-   LLVMTypeRef mask_type = lp_build_int_vec_type(gallivm, fs->type);
-   LLVMValueRef alive = lp_build_alloca(gallivm, mask_type, "kbuf_alive");
-   struct lp_build_for_loop_state loop;
-
-   LLVMBuildStore(builder, LLVMConstNull(mask_type), alive);
-   lp_build_for_loop_begin(&loop, gallivm, lp_build_const_int32(gallivm, 0),
-                           LLVMIntULT,
-                           lp_build_const_int32(gallivm, num_samples),
-                           lp_build_const_int32(gallivm, 1));
-   params.sample = loop.counter;
-   LLVMValueRef sample_alive = lp_build_kbuf_stage(gallivm, &params);
-   LLVMValueRef any = LLVMBuildLoad2(builder, mask_type, alive, "");
-   LLVMBuildStore(builder, LLVMBuildOr(builder, any, sample_alive, ""), alive);
-   lp_build_for_loop_end(&loop);
-
-   return LLVMBuildLoad2(builder, mask_type, alive, "");
+   for (unsigned i = 0; i < fs->key->nr_cbufs; i++)
+      num_samples = MAX2(num_samples, fs->key->cbuf_nr_samples[i]);
+   return kbuf_run_stage(gallivm, &params, num_samples, lp_build_kbuf_stage);
 }

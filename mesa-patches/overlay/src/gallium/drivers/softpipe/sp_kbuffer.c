@@ -305,6 +305,7 @@ softpipe_set_kbuffer_state(struct pipe_context *pipe,
 
    set_program(kb, state->program);
    kb->num_color_buffers = state->num_color_buffers;
+   kb->peel = state->peel;
 
    if (kb->program)
       set_constants(kb, state->constants, state->constants_size);

@@ -31,8 +31,6 @@
 #include "util/u_math.h"
 #include "util/u_memory.h"
 
-#define MAX_PIXEL_BYTES 16
-
 /** Where one entry of the quads is and how to get it. */
 struct kbuffer_access
 {
@@ -46,7 +44,7 @@ struct kbuffer_access
    /* Set bits are replaced on a write.  Only these: what the program does not
     * write must not change by being unpacked and packed again.
     */
-   uint8_t write_bits[MAX_PIXEL_BYTES];
+   uint8_t write_bits[SP_MAX_PIXEL_BYTES];
    bool write_all_bits;
 };
 
@@ -71,16 +69,20 @@ kbuffer_stage(struct quad_stage *tail)
    return container_of(tail, struct kbuffer_stage, tail);
 }
 
-/** The bits of a pixel that hold the given components. */
-static void
-component_bits(enum pipe_format format, unsigned components,
-               uint8_t bits[MAX_PIXEL_BYTES])
+void
+sp_kbuffer_component_bits(enum pipe_format format, unsigned components,
+                          uint8_t bits[SP_MAX_PIXEL_BYTES])
 {
    const struct util_format_description *desc =
       util_format_description(format);
    unsigned seen = 0;
 
-   memset(bits, 0, MAX_PIXEL_BYTES);
+   if (format == PIPE_FORMAT_R9G9B9E5_FLOAT) {
+      memset(bits, components ? 0xff : 0, SP_MAX_PIXEL_BYTES);
+      return;
+   }
+
+   memset(bits, 0, SP_MAX_PIXEL_BYTES);
 
    for (unsigned c = 0; c < 4; c++) {
       const unsigned chan = desc->swizzle[c];
@@ -132,12 +134,8 @@ setup_access(struct softpipe_context *sp, const struct sp_kbuffer_reg *reg,
    access->pixel_bytes = util_format_get_blocksize(access->format);
    access->writemask = reg->writemask & blend->rt[rt].colormask;
 
-   if (access->format == PIPE_FORMAT_R9G9B9E5_FLOAT && access->writemask) {
-      /* One exponent for all: here the rest has to be packed again. */
-      memset(access->write_bits, 0xff, sizeof(access->write_bits));
-   } else {
-      component_bits(access->format, access->writemask, access->write_bits);
-   }
+   sp_kbuffer_component_bits(access->format, access->writemask,
+                             access->write_bits);
 
    access->write_all_bits = true;
    for (unsigned i = 0; i < access->pixel_bytes; i++)
@@ -194,11 +192,12 @@ store_entry(const struct softpipe_context *sp,
             const struct tgsi_exec_vector *output)
 {
    uint32_t rgba[TGSI_QUAD_SIZE][TGSI_NUM_CHANNELS];
-   uint8_t packed[TGSI_QUAD_SIZE * MAX_PIXEL_BYTES];
+   uint8_t packed[TGSI_QUAD_SIZE * SP_MAX_PIXEL_BYTES];
 
    if (!access->map || !access->writemask)
       return;
 
+   /* With one exponent for all, the rest has to be packed again. */
    if (access->format == PIPE_FORMAT_R9G9B9E5_FLOAT)
       fetch_entry(sp, access, quad, rgba);
    else
@@ -219,39 +218,34 @@ store_entry(const struct softpipe_context *sp,
 
       if (access->write_all_bits) {
          memcpy(dst, src, access->pixel_bytes);
-         continue;
-      }
-
-      for (unsigned i = 0; i < access->pixel_bytes; i++) {
-         dst[i] = (dst[i] & ~access->write_bits[i]) |
-                  (src[i] & access->write_bits[i]);
+      } else {
+         sp_kbuffer_merge_bits(dst, src, access->write_bits,
+                               access->pixel_bytes);
       }
    }
 }
 
-/** Color output n of the fragment shader; 0, 0, 0, 1 if it writes none. */
-static void
-load_color(const struct kbuffer_stage *stage, const struct quad_header *quad,
-           unsigned n, struct tgsi_exec_vector *input)
+void
+sp_kbuffer_load_color(const struct softpipe_context *sp,
+                      const struct quad_header *quad, int color,
+                      struct tgsi_exec_vector *rgba)
 {
-   const bool clamp = stage->tail.softpipe->rasterizer->clamp_fragment_color;
-
-   if (stage->color[n] < 0) {
+   if (color < 0) {
       for (unsigned j = 0; j < TGSI_QUAD_SIZE; j++) {
          for (unsigned c = 0; c < TGSI_NUM_CHANNELS; c++)
-            input->xyzw[c].f[j] = c == 3;
+            rgba->xyzw[c].f[j] = c == 3;
       }
       return;
    }
 
-   const float (*color)[TGSI_QUAD_SIZE] = quad->output.color[stage->color[n]];
-
    for (unsigned c = 0; c < TGSI_NUM_CHANNELS; c++) {
-      if (clamp) {
+      const float *value = quad->output.color[color][c];
+
+      if (sp->rasterizer->clamp_fragment_color) {
          for (unsigned j = 0; j < TGSI_QUAD_SIZE; j++)
-            input->xyzw[c].f[j] = SATURATE(color[c][j]);
+            rgba->xyzw[c].f[j] = SATURATE(value[j]);
       } else {
-         memcpy(&input->xyzw[c], color[c], sizeof(input->xyzw[c]));
+         memcpy(&rgba->xyzw[c], value, sizeof(rgba->xyzw[c]));
       }
    }
 }
@@ -272,22 +266,30 @@ eval_pos_coef(const struct quad_header *quad, unsigned chan,
    value[3] = a0 + dadx + dady;
 }
 
-/** The depth that the depth test sees, before its conversion to the buffer. */
-static void
-load_depth(const struct kbuffer_stage *stage, const struct quad_header *quad,
-           float z[TGSI_QUAD_SIZE])
+bool
+sp_kbuffer_shader_writes_depth(const struct softpipe_context *sp)
 {
-   const struct softpipe_context *sp = stage->tail.softpipe;
-   float min = 0.0f, max = 1.0f;
+   return sp->fs_variant->info.writes_z && !sp->early_depth;
+}
 
-   if (sp->fs_variant->info.writes_z && !sp->early_depth)
+void
+sp_kbuffer_load_depth(const struct softpipe_context *sp,
+                      const struct quad_header *quad, float z[TGSI_QUAD_SIZE])
+{
+   if (sp_kbuffer_shader_writes_depth(sp))
       memcpy(z, quad->output.depth, sizeof(quad->output.depth));
    else
       eval_pos_coef(quad, 2, z);
+}
+
+void
+sp_kbuffer_clamp_depth(const struct softpipe_context *sp,
+                       unsigned viewport_index, float z[TGSI_QUAD_SIZE])
+{
+   float min = 0.0f, max = 1.0f;
 
    if (!sp->rasterizer->depth_clip_near) {
-      const struct pipe_viewport_state *vp =
-         &sp->viewports[stage->viewport_index];
+      const struct pipe_viewport_state *vp = &sp->viewports[viewport_index];
       const float near_val = vp->translate[2] - vp->scale[2];
       const float far_val = near_val + vp->scale[2] * 2.0f;
 
@@ -317,7 +319,8 @@ load_position(const struct kbuffer_stage *stage,
       input->xyzw[0].f[j] = x + center;
       input->xyzw[1].f[j] = y + center;
    }
-   load_depth(stage, quad, input->xyzw[2].f);
+   sp_kbuffer_load_depth(sp, quad, input->xyzw[2].f);
+   sp_kbuffer_clamp_depth(sp, stage->viewport_index, input->xyzw[2].f);
    eval_pos_coef(quad, 3, input->xyzw[3].f);
 }
 
@@ -332,8 +335,10 @@ load_inputs(const struct kbuffer_stage *stage, const struct quad_header *quad)
       load_position(stage, quad, &inputs[prog->position]);
 
    for (unsigned n = 0; n < ARRAY_SIZE(prog->color); n++) {
-      if (prog->color[n] >= 0)
-         load_color(stage, quad, n, &inputs[prog->color[n]]);
+      if (prog->color[n] >= 0) {
+         sp_kbuffer_load_color(sp, quad, stage->color[n],
+                               &inputs[prog->color[n]]);
+      }
    }
 
    for (unsigned i = 0; i < prog->num_reads; i++)
@@ -379,22 +384,23 @@ run_tail(struct quad_stage *qs, struct quad_header *quads[], unsigned nr)
    }
 }
 
-static void
-setup_colors(struct kbuffer_stage *stage)
+void
+sp_kbuffer_find_colors(const struct softpipe_context *sp,
+                       int8_t color[PIPE_MAX_COLOR_BUFS])
 {
-   const struct tgsi_shader_info *info = &stage->tail.softpipe->fs_variant->info;
+   const struct tgsi_shader_info *info = &sp->fs_variant->info;
 
    if (info->properties[TGSI_PROPERTY_FS_COLOR0_WRITES_ALL_CBUFS]) {
-      memset(stage->color, 0, sizeof(stage->color));
+      memset(color, 0, PIPE_MAX_COLOR_BUFS);
       return;
    }
 
-   memset(stage->color, -1, sizeof(stage->color));
+   memset(color, -1, PIPE_MAX_COLOR_BUFS);
    for (unsigned i = 0; i < info->num_outputs; i++) {
       const unsigned n = info->output_semantic_index[i];
 
       if (info->output_semantic_name[i] == TGSI_SEMANTIC_COLOR)
-         stage->color[n] = n;
+         color[n] = n;
    }
 }
 
@@ -423,7 +429,7 @@ begin_tail(struct quad_stage *qs)
    for (unsigned i = 0; i < kb->program->num_writes; i++)
       setup_access(sp, &kb->program->writes[i], &stage->writes[i]);
 
-   setup_colors(stage);
+   sp_kbuffer_find_colors(sp, stage->color);
 
    const struct tgsi_exec_consts_info constants = {
       .ptr = kb->constants,

@@ -1,0 +1,369 @@
+/*
+ * Copyright © 2026 The mesa-kbuffer authors
+ * SPDX-License-Identifier: MIT
+ */
+
+#include "lp_peel.h"
+
+#include "compiler/nir/nir.h"
+#include "util/format/u_format.h"
+#include "util/u_debug.h"
+#include "util/u_framebuffer.h"
+#include "util/u_memory.h"
+#include "util/u_pack_color.h"
+
+#include "lp_context.h"
+#include "lp_flush.h"
+#include "lp_kbuf.h"
+#include "lp_scene.h"
+#include "lp_setup_context.h"
+#include "lp_state.h"
+#include "lp_state_fs.h"
+#include "lp_texture.h"
+
+
+/* Off: every fragment is shaded.  Makes no difference to images. */
+DEBUG_GET_ONCE_BOOL_OPTION(kbuf_cull, "LP_KBUF_CULL", true)
+
+
+static bool
+is_reversed(enum pipe_compare_func func)
+{
+   return func == PIPE_FUNC_GREATER || func == PIPE_FUNC_GEQUAL;
+}
+
+
+void
+lp_peel_depth_format_init(struct lp_peel_depth_format *depth,
+                          enum pipe_format format, bool reversed)
+{
+   const struct util_format_description *desc =
+      util_format_description(format);
+   const struct util_format_channel_description *chan =
+      &desc->channel[desc->swizzle[0]];
+
+   assert(util_format_has_depth(desc));
+   memset(depth, 0, sizeof *depth);
+   depth->floating = chan->type == UTIL_FORMAT_TYPE_FLOAT;
+   depth->reversed = reversed;
+   depth->has_stencil = util_format_has_stencil(desc);
+   depth->bytes = desc->block.bits / 8;
+   depth->width = chan->size;
+   depth->shift = chan->shift;
+   assert(depth->width + depth->shift <= 32);
+}
+
+
+unsigned
+lp_peel_color_words(enum pipe_format format)
+{
+   return format == PIPE_FORMAT_NONE ? 0 :
+      DIV_ROUND_UP(util_format_get_blocksizebits(format), 32);
+}
+
+
+static int32_t
+compare_depth(const struct lp_peel_depth_format *format,
+              enum pipe_format pipe_format, double depth)
+{
+   uint64_t value = util_pack64_z_stencil(pipe_format, depth, 0);
+   const uint64_t mask = (UINT64_C(1) << format->width) - 1;
+
+   return lp_peel_compare_bits(format, (value >> format->shift) & mask);
+}
+
+
+/*
+ * Objects.
+ */
+
+static void *
+llvmpipe_create_peel_object(struct pipe_context *pipe)
+{
+   return CALLOC_STRUCT(lp_peel_object);
+}
+
+
+static void
+llvmpipe_delete_peel_object(struct pipe_context *pipe, void *state)
+{
+   struct lp_peel_object *object = state;
+
+   /* Scenes do not count their references. */
+   llvmpipe_finish(pipe, "peel object");
+   align_free(object->bounds);
+   FREE(object);
+}
+
+
+/** Where the layers of a depth buffer are in memory. */
+struct depth_layers
+{
+   const uint8_t *map;
+   size_t stride, layer_stride, sample_stride;
+   unsigned num_layers;
+   struct lp_peel_depth_format format;
+};
+
+
+static int32_t
+read_depth(const struct depth_layers *layers, unsigned x, unsigned y,
+           unsigned layer, unsigned sample)
+{
+   const uint8_t *pixel = layers->map +
+                          layer * layers->layer_stride +
+                          sample * layers->sample_stride +
+                          y * layers->stride +
+                          x * layers->format.bytes;
+   uint32_t word = 0;
+
+   memcpy(&word, pixel, MIN2(layers->format.bytes, 4));
+   word >>= layers->format.shift;
+   if (layers->format.width < 32)
+      word &= (1u << layers->format.width) - 1;
+   return lp_peel_compare_bits(&layers->format, word);
+}
+
+
+/**
+ * The bound of one sample from what its layers hold now.
+ *
+ * \param old  what bounded this pass, or NULL
+ * \return whether the sample could take a fragment behind the new bound
+ */
+static bool
+advance_sample(const struct depth_layers *layers, int32_t empty,
+               unsigned x, unsigned y, unsigned sample, unsigned i,
+               const struct lp_peel_bound *old, struct lp_peel_bound *bound)
+{
+   const int32_t depth =
+      read_depth(layers, x, y, layers->num_layers - 1, sample);
+   uint32_t kept = 0;
+
+   for (unsigned layer = layers->num_layers; layer--;)
+      kept += read_depth(layers, x, y, layer, sample) == depth;
+
+   bool more = depth < empty;
+   if (old && depth <= old->depth[i]) {
+      const uint32_t arrived = old->seen[i] > old->kept[i] ?
+                               old->seen[i] - old->kept[i] : 0;
+      uint32_t new_kept =
+         depth == old->depth[i] ? MIN2(arrived, kept) : 0;
+
+      more &= new_kept > 0;
+      if (depth == old->depth[i])
+         kept = old->kept[i] + new_kept;
+   }
+
+   bound->depth[i] = depth;
+   bound->kept[i] = kept;
+   bound->seen[i] = 0;
+   return more;
+}
+
+
+static bool
+llvmpipe_advance_peel_object(struct pipe_context *pipe, void *state,
+                             struct pipe_surface *zsbuf,
+                             enum pipe_compare_func func,
+                             double empty_depth)
+{
+   struct llvmpipe_context *lp = llvmpipe_context(pipe);
+   struct lp_peel_object *object = state;
+
+   llvmpipe_finish(pipe, "peel object");
+   lp->dirty |= LP_NEW_KBUFFER;
+
+   if (!zsbuf) {
+      align_free(object->bounds);
+      memset(object, 0, sizeof *object);
+      return true;
+   }
+
+   const unsigned width = zsbuf->width;
+   const unsigned height = zsbuf->height;
+   const unsigned blocks_x = DIV_ROUND_UP(width, 4);
+   const unsigned blocks_y = DIV_ROUND_UP(height, 4);
+   const unsigned num_samples = util_res_sample_count(zsbuf->texture);
+   const size_t size = (size_t)blocks_x * blocks_y * num_samples *
+                       sizeof(struct lp_peel_bound);
+   struct lp_peel_bound *bounds = align_malloc(size, 64);
+
+   if (!bounds)
+      return false;
+   memset(bounds, 0, size);
+
+   const unsigned level = zsbuf->u.tex.level;
+   struct depth_layers layers = {
+      .map = llvmpipe_resource_map(zsbuf->texture, level,
+                                   zsbuf->u.tex.first_layer,
+                                   LP_TEX_USAGE_READ),
+      .stride = llvmpipe_resource_stride(zsbuf->texture, level),
+      .layer_stride = llvmpipe_layer_stride(zsbuf->texture, level),
+      .sample_stride = llvmpipe_sample_stride(zsbuf->texture),
+      .num_layers = zsbuf->u.tex.last_layer - zsbuf->u.tex.first_layer + 1,
+   };
+   lp_peel_depth_format_init(&layers.format, zsbuf->format, is_reversed(func));
+   const int32_t empty = compare_depth(&layers.format, zsbuf->format,
+                                       empty_depth);
+
+   const struct lp_peel_bound *old = object->bounds;
+   if (object->num_samples != num_samples || object->blocks_x != blocks_x ||
+       object->blocks_y != blocks_y)
+      old = NULL;
+
+   bool exhausted = true;
+   for (unsigned y = 0; y < height; y++) {
+      for (unsigned x = 0; x < width; x++) {
+         const unsigned i = (y & 2) * 4 + (x & 2) * 2 + (y & 1) * 2 + (x & 1);
+
+         for (unsigned s = 0; s < num_samples; s++) {
+            const size_t b =
+               ((size_t)(y / 4) * blocks_x + x / 4) * num_samples + s;
+
+            if (advance_sample(&layers, empty, x, y, s, i,
+                               old ? &old[b] : NULL, &bounds[b]))
+               exhausted = false;
+         }
+      }
+   }
+   llvmpipe_resource_unmap(zsbuf->texture, level, zsbuf->u.tex.first_layer);
+
+   align_free(object->bounds);
+   object->num_samples = num_samples;
+   object->blocks_x = blocks_x;
+   object->blocks_y = blocks_y;
+   object->bounds = bounds;
+   object->exhausted = exhausted;
+   object->overflow = 0;
+   return true;
+}
+
+
+static bool
+llvmpipe_get_peel_overflow(struct pipe_context *pipe, void *state)
+{
+   const struct lp_peel_object *object = state;
+
+   llvmpipe_finish(pipe, "peel overflow");
+   return object->overflow != 0;
+}
+
+
+void
+lp_peel_init(struct llvmpipe_context *lp)
+{
+   lp->pipe.create_peel_object = llvmpipe_create_peel_object;
+   lp->pipe.delete_peel_object = llvmpipe_delete_peel_object;
+   lp->pipe.advance_peel_object = llvmpipe_advance_peel_object;
+   lp->pipe.get_peel_overflow = llvmpipe_get_peel_overflow;
+}
+
+
+/*
+ * Draws.
+ */
+
+/** Refusing early must not change what the shader does otherwise. */
+static bool
+can_cull(const struct nir_shader *fs)
+{
+   return debug_get_option_kbuf_cull() &&
+          !(fs->info.outputs_written & BITFIELD64_BIT(FRAG_RESULT_DEPTH)) &&
+          !fs->info.writes_memory;
+}
+
+
+/** Whether the bound that an object has is one of this framebuffer. */
+static bool
+fits_framebuffer(const struct lp_peel_object *object,
+                 const struct pipe_framebuffer_state *fb)
+{
+   return object->num_samples == util_res_sample_count(fb->zsbuf->texture) &&
+          object->blocks_x >= DIV_ROUND_UP(fb->width, 4) &&
+          object->blocks_y >= DIV_ROUND_UP(fb->height, 4);
+}
+
+
+static bool
+can_insert(const struct llvmpipe_context *lp)
+{
+   const struct pipe_framebuffer_state *fb = &lp->framebuffer;
+   const struct pipe_peel_state *peel = &lp->kbuf.peel;
+   const struct lp_peel_object *object = peel->object;
+
+   return object && peel->writemask && fb->zsbuf &&
+          util_format_has_depth(util_format_description(fb->zsbuf->format)) &&
+          !(object->bounds &&
+            (object->exhausted || !fits_framebuffer(object, fb)));
+}
+
+
+void
+lp_peel_make_key(const struct llvmpipe_context *lp,
+                 struct lp_fragment_shader_variant_key *key)
+{
+   const struct pipe_peel_state *peel = &lp->kbuf.peel;
+   const struct lp_peel_object *object = peel->object;
+   struct lp_peel_key *peel_key = &key->kbuf.peel;
+
+   /* The stage is there instead of these tests, too. */
+   memset(&key->depth, 0, sizeof key->depth);
+   memset(key->stencil, 0, sizeof key->stencil);
+   key->zsbuf_format = PIPE_FORMAT_NONE;
+
+   if (!can_insert(lp))
+      return;
+
+   key->zsbuf_format = lp->framebuffer.zsbuf->format;
+   key->kbuf.num_colors = key->nr_cbufs;
+   peel_key->insert = true;
+   peel_key->reversed = is_reversed(peel->func);
+   peel_key->equal =
+      peel->func == PIPE_FUNC_LEQUAL || peel->func == PIPE_FUNC_GEQUAL;
+   peel_key->bounded = object->bounds != NULL;
+   peel_key->cull = can_cull(lp->fs->base.ir.nir) &&
+                    key->coverage_samples >= key->zsbuf_nr_samples;
+}
+
+
+bool
+lp_peel_update_scene(struct lp_setup_context *setup)
+{
+   struct llvmpipe_context *lp = llvmpipe_context(setup->pipe);
+   const struct pipe_framebuffer_state *fb = &setup->fb;
+   const struct pipe_peel_state *peel = &lp->kbuf.peel;
+   struct lp_peel_object *object = peel->object;
+
+   setup->dirty |= LP_SETUP_NEW_FS;
+   setup->fs.current.peel = NULL;
+
+   /* A query can begin a scene before any state is bound. */
+   if (!lp->blend || lp->blend->kbuffer_mode != PIPE_KBUFFER_PEEL ||
+       !can_insert(lp))
+      return true;
+
+   struct lp_rast_peel *stored = lp_scene_alloc(setup->scene, sizeof *stored);
+   if (!stored)
+      return false;
+   memset(stored, 0, sizeof *stored);
+
+   stored->object = object;
+   lp_peel_depth_format_init(&stored->depth, fb->zsbuf->format,
+                             is_reversed(peel->func));
+   stored->bounded = object->bounds != NULL;
+   stored->empty = compare_depth(&stored->depth, fb->zsbuf->format,
+                                 peel->empty_depth);
+   stored->num_layers =
+      fb->zsbuf->u.tex.last_layer - fb->zsbuf->u.tex.first_layer + 1;
+   stored->num_samples = util_res_sample_count(fb->zsbuf->texture);
+   stored->num_words = 1;
+   for (unsigned i = 0; i < fb->nr_cbufs; i++) {
+      if (fb->cbufs[i])
+         stored->num_words += lp_peel_color_words(fb->cbufs[i]->format);
+   }
+
+   setup->fs.current.peel = stored;
+   setup->scene->peels = true;
+   return true;
+}

@@ -1,0 +1,26 @@
+/*
+ * Copyright © 2026 The mesa-kbuffer authors
+ * SPDX-License-Identifier: MIT
+ */
+
+/**
+ * \file lp_peel_pixels.h
+ * Blocks of 4x4 pixels from memory to vectors of 32-bit words (lp_peel_tile.h)
+ * and back.
+ */
+
+#ifndef LP_PEEL_PIXELS_H
+#define LP_PEEL_PIXELS_H
+
+#include <stdint.h>
+
+void
+lp_peel_load_pixels(uint32_t *words, const uint8_t *block, unsigned stride,
+                    unsigned bytes);
+
+/** \param quads  the first word of each quad; the next ones lie 16 apart */
+void
+lp_peel_store_pixels(const uint32_t *const quads[4], uint8_t *block,
+                     unsigned stride, unsigned bytes);
+
+#endif /* LP_PEEL_PIXELS_H */

@@ -1,0 +1,92 @@
+/*
+ * Copyright © 2026 The mesa-kbuffer authors
+ * SPDX-License-Identifier: MIT
+ */
+
+/**
+ * \file lp_peel_tile.h
+ * The layers of the tile that a thread works on.
+ *
+ * As in lp_kbuf_tile.h a block of 4x4 pixels has all of its values side by
+ * side, as vectors that the generated code uses without shuffles: block,
+ * sample, layer, word (the depth in comparable form, then the colors as they
+ * are stored), quad, pixel of the quad.
+ *
+ * For each group of pixels there is a count: all layers behind that one are
+ * the same as it, and are not there.  So nothing has to be done to layers
+ * that have been cleared, until something comes into them.
+ */
+
+#ifndef LP_PEEL_TILE_H
+#define LP_PEEL_TILE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "gallivm/lp_bld_type.h"
+#include "util/macros.h"
+
+#include "lp_limits.h"
+#include "lp_peel.h"
+
+struct lp_rasterizer;
+struct lp_rasterizer_task;
+
+#define LP_PEEL_TILE_BLOCKS ((TILE_SIZE / 4) * (TILE_SIZE / 4))
+
+/** Bytes of a word of the 16 pixels of a block. */
+#define LP_PEEL_WORD_SIZE (16 * sizeof(uint32_t))
+
+/** Groups of a block, in which the generated code works: one of each quad. */
+#define LP_PEEL_GROUPS 4
+
+struct lp_peel_tile
+{
+   /* Used by generated code. */
+   uint8_t *data;
+   uint32_t *counts;      /**< of block, sample, group */
+   void (*load_block)(struct lp_peel_tile *tile, uint32_t block);
+   uint32_t block_size;   /**< in bytes */
+   uint32_t sample_size;
+   uint32_t last_layer;
+   int32_t empty;
+   struct lp_peel_bound *bounds;  /**< of the first block */
+   uint32_t bound_blocks_x;
+   uint32_t overflow;
+   uint8_t valid[LP_PEEL_TILE_BLOCKS];
+   uint8_t changed[LP_PEEL_TILE_BLOCKS];
+
+   struct lp_rasterizer_task *task;
+   const struct lp_rast_peel *peel;  /**< NULL: no block is valid */
+   unsigned num_valid;
+   size_t data_size;     /**< what is allocated */
+   size_t counts_size;
+};
+
+/** How many quads a group has, see generate_fragment(). */
+static inline unsigned
+lp_peel_group_quads(void)
+{
+   return MIN2(lp_native_vector_width / 128, 4);
+}
+
+/** Get ready for the state that the task has; false if there is no memory. */
+bool
+lp_peel_tile_set_state(struct lp_rasterizer_task *task);
+
+/** Give all blocks back. */
+void
+lp_peel_tile_flush(struct lp_peel_tile *tile);
+
+/** The buffers are about to be used by something else. */
+static inline void
+lp_peel_tile_done(struct lp_peel_tile *tile)
+{
+   if (tile && tile->peel)
+      lp_peel_tile_flush(tile);
+}
+
+void
+lp_peel_tiles_destroy(struct lp_rasterizer *rast);
+
+#endif /* LP_PEEL_TILE_H */
