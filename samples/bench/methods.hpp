@@ -20,6 +20,9 @@ struct Variant {
 
 inline constexpr std::array as_meant{Variant{}};
 
+/// Early rejection of what cannot be kept, which llvmpipe leaves out if told so.
+inline constexpr std::array culling_by_driver{Variant{}, Variant{"no-culling", "LP_KBUF_CULL=0"}};
+
 /// The largest k of the study.
 inline constexpr int max_k = 64;
 
@@ -37,6 +40,7 @@ inline constexpr std::array methods{
     Method{"classic-peeling", "stock", max_k},
     Method{"fbfetch", "stock", 16},
     Method{"kbuffer-program", "ours", max_k},
+    Method{"depth-peeling", "ours", max_k, culling_by_driver},
 };
 
 /// A variant of a method with its k (0 where it does not apply).

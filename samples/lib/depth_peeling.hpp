@@ -62,6 +62,9 @@ public:
     ImageRgbaF read_color(int layer, int attachment = 0) const;
     ImageF read_depth(int layer) const;
 
+    /// The layers of color attachment 0.
+    const Texture &color() const { return colors_.front(); }
+
     const PeelingLayers &layers() const { return layers_; }
     int bytes_per_pixel() const;
 
