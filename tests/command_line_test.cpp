@@ -117,6 +117,8 @@ TEST(CommandLine, PeelingRefusesBadInput)
     expect_refused(run({KBUFFER_PEELING, "--out-dir", empty + "/in/it"}), "peeling",
                    "not a directory");
     expect_refused(run({KBUFFER_PEELING, "--floats"}), "peeling", "--out-dir");
+    expect_refused(run({KBUFFER_PEELING, "--out", directory / "no/such/out.png"}), "peeling",
+                   "no/such");
 }
 
 TEST(CommandLine, PeelingSaysWhatTheDriverLacks)
@@ -138,13 +140,15 @@ TEST(CommandLine, PeelingSaysWhatTheDriverLacks)
 TEST(CommandLine, PeelingWorksOtherwise)
 {
     const TempDirectory directory;
-    const auto result = run({KBUFFER_PEELING, "--out-dir", directory / "new/layers", "--size",
-                             "16x16", "--triangles", "100", "--k", "2", "--all"},
-                            mesa_environment(patched_prefix()));
+    const auto result =
+        run({KBUFFER_PEELING, "--out-dir", directory / "new/layers", "--out", directory / "out.png",
+             "--size", "16x16", "--triangles", "100", "--k", "2", "--all"},
+            mesa_environment(patched_prefix()));
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.err, "");
     EXPECT_EQ(result.out.find("pass 1: layers 0 to 1, "), 0U) << result.out;
     EXPECT_NE(result.out.find("\npass 2: layers 2 to 3, "), std::string::npos) << result.out;
+    EXPECT_TRUE(std::filesystem::exists(directory / "out.png"));
     EXPECT_TRUE(std::filesystem::exists(directory / "new/layers/picture.png"));
     EXPECT_TRUE(std::filesystem::exists(directory / "new/layers/layer-002.png"));
     EXPECT_FALSE(std::filesystem::exists(directory / "new/layers/layer-000.pfm"));

@@ -194,8 +194,11 @@ std::optional<Failure> run(kb::PeelingOptions options, const kb::Mesh &mesh,
         times.push_back(*time);
     }
     const GLuint framebuffer = renderer->accumulation().framebuffer();
-    if (written = files.write_picture(kb::read_color(gl, framebuffer, options.layers.size));
-        !written)
+    const kb::ImageRgbaF picture = kb::read_color(gl, framebuffer, options.layers.size);
+    written = files.write_picture(picture);
+    if (written)
+        written = kb::write_outputs(options.outputs, picture, {});
+    if (!written)
         return unwritten(written.error());
 
     const auto [fragments, deepest] = renderer->accumulation().count();
@@ -232,8 +235,10 @@ int main(int argc, char **argv)
     if (!mesh)
         return kb::fail(app, mesh.error(), kb::exit_bad_input);
     const kb::LayerFiles files(options.directory, options.floats);
-    if (auto writable = files.check(); !writable)
-        return kb::fail(app, writable.error(), kb::exit_bad_input);
+    for (const auto &writable : {files.check(), kb::check_writable(options.outputs)}) {
+        if (!writable)
+            return kb::fail(app, writable.error(), kb::exit_bad_input);
+    }
 
     try {
         if (const auto failure = run(options, *mesh, files))

@@ -55,11 +55,12 @@ void declare_options(CLI::App &app, PeelingOptions &options)
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")
         ->check(CLI::Range(1, 10'000))
         ->type_name("N");
+    app.add_option("--out", options.outputs.picture, "Write the picture")->type_name("FILE.png");
     app.add_option("--out-dir", options.directory,
                    "Write picture.png and the color of each layer, layer-NNN.png")
         ->type_name("DIR");
     app.add_flag("--floats", options.floats,
-                 "Write picture, layers and their depths as PFM files, too");
+                 "Write picture, layers and their depths as PFM files into DIR, too");
 }
 
 Status check_options(const PeelingOptions &options)

@@ -4,6 +4,7 @@
 
 #include "command_line.hpp"
 #include "depth_peeling.hpp"
+#include "output.hpp"
 #include "scene_options.hpp"
 
 #include <string>
@@ -17,7 +18,8 @@ struct PeelingOptions {
     bool all = false;
     int repeat = 1;
     std::string context = "osmesa";
-    std::string directory; ///< Empty: no pictures are written.
+    OutputPaths outputs;   ///< Only the picture.
+    std::string directory; ///< For composite and layers; empty: none.
     bool floats = false;
 };
 
