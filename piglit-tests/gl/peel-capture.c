@@ -87,11 +87,10 @@ peel_draw_captured(struct peel *p, GLenum mode,
 {
 	const int area = p->width * p->height, samples = MAX2(p->samples, 1);
 	struct peel capture;
-	GLint viewport[4];
+	int found = 0;
 
 	peel_draw_vertices(mode, vertices, n);
 
-	glGetIntegerv(GL_VIEWPORT, viewport);
 	glPushAttrib(GL_ENABLE_BIT | GL_VIEWPORT_BIT);
 	capture = create_capture(p);
 	glPopAttrib();
@@ -114,6 +113,7 @@ peel_draw_captured(struct peel *p, GLenum mode,
 					memcpy(colors[o], a.color[p->buffers[o]]
 					       + 4 * j, 16);
 			}
+			found++;
 			peel_model_insert(p, x, y, j / area, a.depth[j],
 					  colors);
 		}
@@ -121,5 +121,9 @@ peel_draw_captured(struct peel *p, GLenum mode,
 		free_image(&b);
 	}
 	peel_end(&capture, true);
+	if (found == 0) {
+		printf("a scene without fragments\n");
+		piglit_report_result(PIGLIT_FAIL);
+	}
 	glBindFramebuffer(GL_FRAMEBUFFER, p->fbo);
 }

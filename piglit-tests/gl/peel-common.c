@@ -129,11 +129,19 @@ peel_draw_gl(const struct peel *p, const struct peel_quad *quads, int n)
 
 	for (int i = 0; i < n * 6; i++) {
 		const struct peel_quad *q = &quads[i / 6];
-		const float x = corners[i % 6][0] ? q->x1 : q->x0;
-		const float y = corners[i % 6][1] ? q->y1 : q->y0;
+		const float z = p->depth->bits[0] == 32 ? q->z : peel_depth(
+			p->depth, peel_depth_code(p->depth, q->z));
+		/*
+		 * Not for GL to clip: where softpipe divides a clipped polygon
+		 * a pixel may get two fragments.
+		 */
+		const float x = corners[i % 6][0] ? MIN2(q->x1, p->width) :
+			MAX2(q->x0, 0);
+		const float y = corners[i % 6][1] ? MIN2(q->y1, p->height) :
+			MAX2(q->y0, 0);
 
 		vertices[i] = (struct peel_vertex) {
-			2 * x / p->width - 1, 2 * y / p->height - 1, q->z, 1,
+			2 * x / p->width - 1, 2 * y / p->height - 1, z, 1,
 			q->id
 		};
 	}

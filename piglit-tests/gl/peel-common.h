@@ -64,10 +64,7 @@ peel_max_depth(const struct peel_format *format);
 uint32_t
 peel_unpack_depth(const struct peel_format *format, const void *texel);
 
-/**
- * The code that a depth is stored as.  For normalized formats \p z has to be
- * from peel_depth(), or 0 or 1.
- */
+/** The code that a depth is stored as, if it is stored by truncation. */
 uint32_t
 peel_depth_code(const struct peel_format *format, double z);
 
@@ -155,7 +152,10 @@ struct peel_vertex {
 void
 peel_draw_vertices(GLenum mode, const struct peel_vertex *vertices, int n);
 
-/** A rectangle, in pixels, at a window z. */
+/**
+ * A rectangle, in pixels, at a window z; in normalized formats at that of the
+ * code below, as peel_depth() gives it, so that z is not a matter of rounding.
+ */
 struct peel_quad {
 	float x0, y0, x1, y1, z;
 	uint32_t id;

@@ -74,12 +74,19 @@ merged(void *data)
 	bool pass;
 
 	for (int i = 0; i < 32; i++) {
+		struct peel_vertex vertices[3];
 		const uint32_t code = codes / 3 + i % 4;
 
-		/* Between 0.1 and 0.4 of a code above it. */
-		quads[i] = peel_full(&p, (code + .4 - i / 4 * .04) / codes, i);
+		/* From 0.4 of a code above it to 0.1. */
+		for (int j = 0; j < 3; j++)
+			vertices[j] = (struct peel_vertex) {
+				j == 1 ? 3 : -1, j == 2 ? 3 : -1,
+				(code + .4 - i / 4 * .04) / codes, 1, i
+			};
+		peel_draw_vertices(GL_TRIANGLES, vertices, 3);
+		quads[i] = peel_full(&p, peel_depth(p.depth, code), i);
+		peel_draw_model(&p, &quads[i], 1);
 	}
-	peel_draw(&p, quads, 32);
 	pass = peel_check_ranks(&p, quads, 32) && peel_check(&p);
 	return peel_end(&p, pass);
 }

@@ -31,16 +31,27 @@ get_state(const struct peel *p)
 	for (int i = 0; i < PEEL_MAX_COLORS; i++)
 		glGetBooleani_v(GL_COLOR_WRITEMASK, i, s.color_mask[i]);
 	glGetDoublev(GL_DEPTH_CLEAR_VALUE, &clear);
-	s.empty = peel_depth_code(p->depth, clear);
+	/* Clears round. */
+	s.empty = p->depth->bits[0] == 32 ? peel_depth_code(p->depth, clear) :
+		llrint(clear * peel_max_depth(p->depth));
 	s.scissored = glIsEnabled(GL_SCISSOR_TEST);
 	glGetIntegerv(GL_SCISSOR_BOX, s.scissor);
 	return s;
+}
+
+/** A number in the order of depths; those of lines may be below zero. */
+static uint32_t
+key(uint32_t code)
+{
+	return code & 0x80000000 ? ~code : code | 0x80000000;
 }
 
 /** In front of, by the strict form of DepthFunc. */
 static bool
 nearer(GLenum func, uint32_t a, uint32_t b)
 {
+	a = key(a);
+	b = key(b);
 	return func == GL_LESS || func == GL_LEQUAL ? a < b : a > b;
 }
 
