@@ -160,6 +160,29 @@ pop_takes_effect(void *data)
 	return peel_end(&p, pass);
 }
 
+static void
+draw_arrays(struct peel *p, const struct peel_quad *q)
+{
+	peel_draw(p, q, 1);
+}
+
+/** Vertices that Mesa collects until something needs them to be drawn. */
+static void
+draw_immediately(struct peel *p, const struct peel_quad *q)
+{
+	static const float corners[4][2] = {
+		{ -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 }
+	};
+
+	glBegin(GL_QUADS);
+	for (int i = 0; i < 4; i++) {
+		glVertexAttribI1ui(1, q->id);
+		glVertexAttrib4f(0, corners[i][0], corners[i][1], q->z, 1);
+	}
+	glEnd();
+	peel_draw_model(p, q, 1);
+}
+
 /**
  * Each change of a state that draws with peeling look at reaches the next
  * draw, alone and with nothing else changed.
@@ -167,6 +190,7 @@ pop_takes_effect(void *data)
 static enum piglit_result
 changes_take_effect(void *data)
 {
+	void (*const draw)(struct peel *, const struct peel_quad *) = data;
 	struct peel p = peel_simple(3);
 	const struct peel_quad quads[] = {
 		peel_full(&p, .5f, 1), peel_full(&p, .25f, 2),
@@ -176,35 +200,53 @@ changes_take_effect(void *data)
 	};
 	bool pass;
 
-	peel_draw(&p, &quads[0], 1);
+	draw(&p, &quads[0]);
 	glDepthMask(GL_FALSE);
-	peel_draw(&p, &quads[1], 1);
+	draw(&p, &quads[1]);
 	pass = peel_check(&p);
 	glDepthMask(GL_TRUE);
-	peel_draw(&p, &quads[1], 1);
+	draw(&p, &quads[1]);
 	pass = peel_check(&p) && pass;
 
 	/* Of the clear value, too: the second is no longer nearer. */
-	peel_draw(&p, &quads[2], 1);
+	draw(&p, &quads[2]);
 	glClearDepth(.125f);
-	peel_draw(&p, &quads[3], 1);
+	draw(&p, &quads[3]);
 	pass = peel_check(&p) && pass;
 	glClearDepth(1);
-	peel_draw(&p, &quads[3], 1);
+	draw(&p, &quads[3]);
 	pass = peel_check(&p) && pass;
 
 	glDepthFunc(GL_LEQUAL);
-	peel_draw(&p, &quads[4], 1);
+	draw(&p, &quads[4]);
 	pass = peel_check(&p) && pass;
 	glDepthFunc(GL_LESS);
-	peel_draw(&p, &quads[4], 1);
+	draw(&p, &quads[4]);
 	pass = peel_check(&p) && pass;
 
 	glDisable(GL_DEPTH_PEELING_MESA);
 	glEnable(GL_DEPTH_PEELING_MESA);
-	peel_draw(&p, &quads[5], 1);
+	draw(&p, &quads[5]);
 	glColorMask(0, 0, 0, 0);
-	peel_draw(&p, &quads[6], 1);
+	draw(&p, &quads[6]);
+	pass = peel_check(&p) && pass;
+
+	/* The parameters are those after all that was drawn before. */
+	glColorMask(1, 1, 1, 1);
+	peel_restart(&p);
+	for (int i = 3; i >= 0; i--)
+		draw(&p, &quads[i]);
+	pass = peel_check_overflow(&p) && pass;
+	glFramebufferParameteri(GL_FRAMEBUFFER,
+				GL_DEPTH_PEELING_FIRST_LAYER_MESA, 0);
+	p.model.overflow = false;
+	pass = peel_check(&p) && pass;
+	for (int i = 0; i < 3; i++)
+		draw(&p, &quads[0]);
+	peel_next(&p);
+	for (int i = 0; i < 3; i++)
+		draw(&p, &quads[0]);
+	draw(&p, &quads[2]);
 	pass = peel_check(&p) && pass;
 	return peel_end(&p, pass);
 }
@@ -264,7 +306,9 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("push-depth-buffer-bit", push_pop, GL_DEPTH_BUFFER_BIT),
 	KB_SUBTEST("display-list", display_list, NULL),
 	KB_SUBTEST("pop-takes-effect", pop_takes_effect, NULL),
-	KB_SUBTEST("changes-take-effect", changes_take_effect, NULL),
+	KB_SUBTEST("changes-take-effect", changes_take_effect, draw_arrays),
+	KB_SUBTEST("changes-between-vertices", changes_take_effect,
+		   draw_immediately),
 	KB_SUBTEST("between-begin-and-end", between_begin_and_end, NULL),
 	KB_SUBTEST("limit", limit, NULL),
 	KB_SUBTEST_END
