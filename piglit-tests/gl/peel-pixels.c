@@ -115,6 +115,30 @@ bitmap(void *data)
 	return peel_end(&p, peel_check(&p));
 }
 
+/** Text of one color and depth, that overlaps: all of it is inserted. */
+static enum piglit_result
+bitmaps_of_one_depth(void *data)
+{
+	static const GLubyte bits[8] = { 0x18, 0x3c, 0x66, 0xc3, 0xff, 0xc3 };
+	static const GLubyte color[4] = { 255, 128, 0, 255 };
+	struct peel p = make();
+
+	draw_quads(&p, 0);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	glColor4ubv(color);
+	for (int i = 0; i < 3; i++) {
+		glWindowPos3f(4 + i, 5, .25);
+		glBitmap(8, 8, 0, 0, 0, 0, bits);
+		for (int j = 0; j < 64; j++) {
+			if (bits[j / 8] & 0x80 >> j % 8)
+				insert(&p, 4 + i + j % 8, 5 + j / 8, .25,
+				       color);
+		}
+	}
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	return peel_end(&p, peel_check(&p));
+}
+
 static enum piglit_result
 copy_pixels(void *data)
 {
@@ -197,6 +221,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("draw-pixels-zoomed", zoomed, NULL),
 	KB_SUBTEST("draw-depths", draw_depths, NULL),
 	KB_SUBTEST("bitmap", bitmap, NULL),
+	KB_SUBTEST("bitmaps-of-one-depth", bitmaps_of_one_depth, NULL),
 	KB_SUBTEST("copy-pixels", copy_pixels, NULL),
 	KB_SUBTEST_END
 };
