@@ -7,8 +7,7 @@
 
 #include "camera.hpp"
 #include "gl_scene.hpp"
-
-#include <vector>
+#include "kbuffer.hpp"
 
 namespace kb::bench
 {
@@ -31,9 +30,7 @@ private:
 
     const Gl &gl_;
     int entries_;
-    int layers_;
-    std::vector<Texture> attachments_; // entry e is in attachment e % size, layer e / size
-    Framebuffer framebuffer_;
+    KBuffer buffer_;
     VertexArray empty_;
     Program resolve_;
 };

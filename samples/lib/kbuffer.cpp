@@ -14,8 +14,10 @@ constexpr int max_attachments = 8;
 
 Result<KBuffer> KBuffer::make(const Gl &gl, GLenum internal_format, Size size, int entries)
 {
-    GLint max_entries = 0;
-    gl.GetIntegerv(GL_MAX_KBUFFER_ENTRIES_MESA, &max_entries);
+    // A driver without the extension has the entries that framebuffer fetch reaches: one layer.
+    GLint max_entries = max_attachments;
+    if (has_extension(gl, "GL_MESA_kbuffer_program"))
+        gl.GetIntegerv(GL_MAX_KBUFFER_ENTRIES_MESA, &max_entries);
     if (entries < 1 || entries > max_entries)
         return Error{fmt::format("a k-buffer of {} entries is wanted, the driver has {}", entries,
                                  max_entries)};
