@@ -120,7 +120,7 @@ kb_fragment_value(float r, float g, float b, float a)
 GLuint
 kb_use_glsl(const char *vs, const char *gs, const char *fs)
 {
-	GLuint program = glCreateProgram();
+	GLuint program = kb_new_glsl_program();
 	const char *const sources[3] = { vs, gs, fs };
 	static const GLenum stages[3] = {
 		GL_VERTEX_SHADER, GL_GEOMETRY_SHADER, GL_FRAGMENT_SHADER
@@ -138,8 +138,6 @@ kb_use_glsl(const char *vs, const char *gs, const char *fs)
 	if (!piglit_link_check_status(program))
 		piglit_report_result(PIGLIT_FAIL);
 	glUseProgram(program);
-	/* It goes when it is no longer in use. */
-	glDeleteProgram(program);
 	return program;
 }
 

@@ -32,7 +32,14 @@ draw_with_depths(struct peel *p, const float *depths, int n)
 		"#extension GL_ARB_shader_bit_encoding: require\n"
 		"uniform uint bits[14];\n",
 		"gl_FragDepth = uintBitsToFloat(bits[id]);");
-	memcpy(bits, depths, n * 4);
+	for (int i = 0; i < n; i++) {
+		/* Where it is not a matter of rounding. */
+		const float z = p->depth->bits[0] < 32 && depths[i] > 0 &&
+			depths[i] < 1 ? peel_depth(p->depth, peel_depth_code(
+				p->depth, depths[i])) : depths[i];
+
+		memcpy(&bits[i], &z, 4);
+	}
 	glUniform1uiv(glGetUniformLocation(program, "bits"), n, bits);
 	for (int i = 0; i < n; i++) {
 		/* The plane's own depths are in another order. */

@@ -130,7 +130,8 @@ layer(void *data)
 	GLint program;
 	glGetIntegerv(GL_CURRENT_PROGRAM, &program);
 	for (int i = 0; i < NUM; i++) {
-		quads[i] = peel_full(&p, (1 + i * 7 % NUM) / 16., i);
+		quads[i] = peel_full(&p, peel_depth(p.depth, 1 + i * 7 % NUM),
+				     i);
 		glUniform1i(glGetUniformLocation(program, "layer"), i % K);
 		glUniform1ui(glGetUniformLocation(program, "code"),
 			     peel_color_code(p.color[0], 0, 0, i));
