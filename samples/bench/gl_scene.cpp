@@ -7,7 +7,7 @@
 namespace kb::bench
 {
 
-static const std::string version = "#version 430 compatibility\n";
+static const std::string version = "#version 450 compatibility\n";
 
 static const std::string vertex_shader = version + R"(
 layout(location = 0) in vec3 position;

@@ -23,6 +23,12 @@ inline constexpr std::array as_meant{Variant{}};
 /// Early rejection of what cannot be kept, which llvmpipe leaves out if told so.
 inline constexpr std::array culling_by_driver{Variant{}, Variant{"no-culling", "LP_KBUF_CULL=0"}};
 
+/// Without culling a fragment takes the lock before it looks whether it is near enough. Without the
+/// lock what happens is undefined in GL; llvmpipe, where one thread shades all of a pixel, is
+/// right.
+inline constexpr std::array k_plus_variants{Variant{}, Variant{"no-culling", ""},
+                                            Variant{"unlocked", ""}};
+
 /// The largest k of the study.
 inline constexpr int max_k = 64;
 
@@ -39,6 +45,7 @@ inline constexpr std::array methods{
     Method{"zbuffer", "stock", 0},
     Method{"classic-peeling", "stock", max_k},
     Method{"fbfetch", "stock", 16},
+    Method{"k-plus", "stock", max_k, k_plus_variants},
     Method{"kbuffer-program", "ours", max_k},
     Method{"depth-peeling", "ours", max_k, culling_by_driver},
 };

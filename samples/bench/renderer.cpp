@@ -8,8 +8,7 @@ namespace kb::bench
 {
 
 std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method,
-                                        [[maybe_unused]] const std::string &variant, Size size,
-                                        int k)
+                                        const std::string &variant, Size size, int k)
 {
     if (method == "zbuffer")
         return make_zbuffer(gl, size);
@@ -17,6 +16,8 @@ std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method,
         return make_classic_peeling(gl, size, k);
     if (method == "fbfetch")
         return make_fbfetch(gl, size, k);
+    if (method == "k-plus")
+        return make_k_plus(gl, variant, size, k);
     if (method == "kbuffer-program")
         return make_kbuffer_program(gl, size, k);
     if (method == "depth-peeling")
