@@ -53,15 +53,50 @@ output_text(const struct peel_format *format, int output, char *declaration,
 	}
 }
 
-GLuint
-peel_use_program(struct peel *p, const char *declarations,
-		 const char *statements)
+/** A program of the fragment shader, made once for all subtests. */
+static GLuint
+find_program(char *fs)
 {
 	static const char vs[] =
 		"#version 150 compatibility\n"
 		"in vec4 position;\nin uint vertex_id;\n"
 		"flat out uint id;\n"
 		"void main() { gl_Position = position; id = vertex_id; }\n";
+	static struct { char *fs; GLuint program; } known[256];
+	GLuint shaders[2], program;
+	int i = 0;
+
+	while (i < ARRAY_SIZE(known) && known[i].fs) {
+		if (strcmp(known[i].fs, fs) == 0) {
+			free(fs);
+			return known[i].program;
+		}
+		i++;
+	}
+	if (i == ARRAY_SIZE(known)) {
+		printf("more than %d programs\n", i);
+		piglit_report_result(PIGLIT_FAIL);
+	}
+	program = glCreateProgram();
+	shaders[0] = piglit_compile_shader_text(GL_VERTEX_SHADER, vs);
+	shaders[1] = piglit_compile_shader_text(GL_FRAGMENT_SHADER, fs);
+	for (int j = 0; j < 2; j++) {
+		glAttachShader(program, shaders[j]);
+		glDeleteShader(shaders[j]);
+	}
+	glBindAttribLocation(program, 0, "position");
+	glBindAttribLocation(program, 1, "vertex_id");
+	glLinkProgram(program);
+	if (!piglit_link_check_status(program))
+		piglit_report_result(PIGLIT_FAIL);
+	known[i].fs = fs;
+	return known[i].program = program;
+}
+
+GLuint
+peel_use_program(struct peel *p, const char *declarations,
+		 const char *statements)
+{
 	/* As in peel-formats.c. */
 	static const char head[] =
 		"#version 150 compatibility\n"
@@ -75,7 +110,6 @@ peel_use_program(struct peel *p, const char *declarations,
 		"}\n";
 	char outputs[PEEL_MAX_COLORS * 48] = "", body[8192] = "";
 	char *fs = NULL, *top = NULL;
-	GLuint program = kb_new_glsl_program(), shaders[2];
 
 	for (int o = 0; o < PEEL_MAX_COLORS; o++) {
 		if (p->buffers[o] >= 0)
@@ -87,21 +121,10 @@ peel_use_program(struct peel *p, const char *declarations,
 	    asprintf(&fs, "%s%svoid main() {\n%s\n%s}\n", top, outputs,
 		     statements, body) < 0)
 		abort();
-	shaders[0] = piglit_compile_shader_text(GL_VERTEX_SHADER, vs);
-	shaders[1] = piglit_compile_shader_text(GL_FRAGMENT_SHADER, fs);
-	for (int i = 0; i < 2; i++) {
-		glAttachShader(program, shaders[i]);
-		glDeleteShader(shaders[i]);
-	}
-	glBindAttribLocation(program, 0, "position");
-	glBindAttribLocation(program, 1, "vertex_id");
-	glLinkProgram(program);
-	if (!piglit_link_check_status(program))
-		piglit_report_result(PIGLIT_FAIL);
-	glUseProgram(program);
 	free(top);
-	free(fs);
-	return p->program = program;
+	p->program = find_program(fs);
+	glUseProgram(p->program);
+	return p->program;
 }
 
 void
