@@ -16,8 +16,8 @@ namespace kb
 class KBuffer
 {
 public:
-    /// Makes room for at least the given number of entries, with as few layers as possible. Also for
-    /// framebuffer fetch, on drivers without k-buffer programs: one layer then.
+    /// Makes room for at least the given number of entries, with as few layers as possible. Also
+    /// for framebuffer fetch, on drivers without k-buffer programs: one layer then.
     static Result<KBuffer> make(const Gl &gl, GLenum internal_format, Size size, int entries);
 
     /// Sets all components of all entries; leaves the framebuffer bound.
