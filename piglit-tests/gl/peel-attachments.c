@@ -122,6 +122,37 @@ missing(void *data)
 	return peel_end(&p, pass);
 }
 
+/** What the shader does not write is 0, 0, 0, 1. */
+static enum piglit_result
+unwritten(void *data)
+{
+	static const GLenum formats[4] = {
+		GL_R32UI, GL_RGBA8, GL_RGBA32F, GL_RGBA32I,
+	};
+	static const uint32_t ones[4] = { 0, 255, 0x3f800000, 1 };
+	struct peel p = make(4, formats, 1);
+	const int identity[4] = { 0, 1, 2, 3 };
+	bool pass;
+
+	/* A shader for a framebuffer of which only the first is drawn to. */
+	peel_draw_buffers(&p, 1, identity);
+	peel_use_program(&p, "", "");
+	peel_draw_buffers(&p, 4, identity);
+	peel_clear(&p);
+	draw(&p, 1);
+	for (int i = 0; i < p.width * p.height * K; i++) {
+		uint32_t (*color)[4] = p.model.color + 4 * i;
+
+		for (int a = 1; a < 4; a++) {
+			memset(color[a], 0, 16);
+			if (p.model.depth[i] != peel_max_depth(p.depth))
+				color[a][3] = ones[a];
+		}
+	}
+	pass = peel_check(&p);
+	return peel_end(&p, pass);
+}
+
 static const int different = 1, equal = 0;
 
 const struct piglit_subtest kbuffer_subtests[] = {
@@ -129,6 +160,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("equal", count, &equal),
 	KB_SUBTEST("draw-buffers", holes, NULL),
 	KB_SUBTEST("missing", missing, NULL),
+	KB_SUBTEST("unwritten", unwritten, NULL),
 	KB_SUBTEST_END
 };
 

@@ -23,10 +23,13 @@ create_capture(const struct peel *p)
 	};
 	struct peel capture;
 	const GLuint program = p->program;
+	GLint clamp;
 
 	for (int a = 0; a < p->colors; a++)
 		shape.colors[a] = p->color[a]->internal;
+	glGetIntegerv(GL_CLAMP_FRAGMENT_COLOR, &clamp);
 	capture = peel_create(&shape);
+	glClampColor(GL_CLAMP_FRAGMENT_COLOR, clamp);
 	peel_draw_buffers(&capture, PEEL_MAX_COLORS, p->buffers);
 	glUseProgram(program);
 	return capture;

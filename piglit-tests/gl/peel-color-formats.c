@@ -78,6 +78,40 @@ srgb_switched(void *data)
 	return peel_end(&p, peel_check(&p));
 }
 
+/** Colors beyond 0 and 1, which fragment color clamping may limit. */
+static enum piglit_result
+clamped(void *data)
+{
+	static const GLenum formats[] = {
+		GL_RGBA8, GL_RGBA16F, GL_RGBA32F, GL_RGB10_A2,
+		GL_R11F_G11F_B10F,
+	};
+	const GLenum clamp = *(const GLenum *)data;
+	bool pass = true;
+
+	for (int i = 0; i < ARRAY_SIZE(formats) && pass; i++) {
+		struct peel p = make(formats[i]);
+		struct peel_vertex vertices[3 * NUM];
+
+		p.program = kb_use_glsl(
+			"#version 150 compatibility\n"
+			"void main() { gl_Position = gl_Vertex; }\n", NULL,
+			"#version 150 compatibility\nout vec4 o;\n"
+			"void main() { vec2 p = gl_FragCoord.xy;\n"
+			"  o = vec4(p.x / 8.0 - 1.0, 2.0 - p.y / 4.0,\n"
+			"           p.x / 4.0, -p.y); }\n");
+		glClampColor(GL_CLAMP_FRAGMENT_COLOR, clamp);
+		peel_seed(3);
+		peel_random_triangles(vertices, NUM, 1);
+		peel_draw_captured(&p, GL_TRIANGLES, vertices, 3 * NUM);
+		pass = peel_check(&p);
+		if (!pass)
+			printf("in %s\n", piglit_get_gl_enum_name(formats[i]));
+		peel_end(&p, pass);
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 /**
  * Any bits, NaN with a payload among them, that were in the layers before: the
  * fragments that come in front move them back.
@@ -137,6 +171,8 @@ moved_bits(void *data)
 	{ #name "-bits", #name "-bits", moved_bits, \
 	  (void *)&(const GLenum) { GL_##name } }
 
+static const GLenum clamp = GL_TRUE, no_clamp = GL_FALSE;
+
 const struct piglit_subtest kbuffer_subtests[] = {
 	FORMAT(R8),
 	FORMAT(RG8),
@@ -170,6 +206,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	FORMAT(RG32UI),
 	FORMAT(RGBA32UI),
 	FORMAT(RGBA32I),
+	KB_SUBTEST("clamped", clamped, &clamp),
+	KB_SUBTEST("not-clamped", clamped, &no_clamp),
 	KB_SUBTEST("srgb", srgb, NULL),
 	KB_SUBTEST("srgb-switched", srgb_switched, NULL),
 	KB_SUBTEST_END

@@ -216,6 +216,35 @@ exhausted(void *data)
 	return peel_end(&p, pass);
 }
 
+/**
+ * Without clears nothing new comes into the layers, but the loop ends: no
+ * sample gets further than its bound, so that all are exhausted.
+ */
+static enum piglit_result
+never_cleared(void *data)
+{
+	struct peel p = peel_simple(3);
+	struct peel_quad quads[10];
+	int first = 0;
+	bool pass;
+
+	for (int i = 0; i < 10; i++)
+		quads[i] = peel_full(&p, (1 + i % *(const int *)data) / 16., i);
+	do {
+		if (first > 0)
+			glFramebufferParameteri(GL_FRAMEBUFFER,
+				GL_DEPTH_PEELING_FIRST_LAYER_MESA, first);
+		peel_draw_gl(&p, quads, 10);
+		first += 3;
+	} while (first < 30 && peel_get(GL_DEPTH_PEELING_OVERFLOW_MESA));
+	/* The model does only the first pass, which is what is seen. */
+	peel_draw_model(&p, quads, 10);
+	pass = first < 30 && peel_check_layers(&p);
+	if (!pass)
+		printf("%d passes\n", first / 3);
+	return peel_end(&p, pass);
+}
+
 /** Two framebuffers, each with a bound of its own, in turn. */
 static enum piglit_result
 two_framebuffers(void *data)
@@ -254,7 +283,7 @@ two_framebuffers(void *data)
 #define SCENE(num, depths, func, format) \
 	&(const struct scene) { num, depths, GL_##func, GL_DEPTH_COMPONENT##format }
 
-static const int full = 4, short_of_full = 3;
+static const int full = 4, short_of_full = 3, one_depth = 1, depths = 5;
 
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("40-coplanar", coplanar, SCENE(40, 1, LESS, 32F)),
@@ -271,6 +300,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("start-over", start_over, NULL),
 	KB_SUBTEST("exhausted-full", exhausted, &full),
 	KB_SUBTEST("exhausted-short", exhausted, &short_of_full),
+	KB_SUBTEST("never-cleared", never_cleared, &depths),
+	KB_SUBTEST("never-cleared-coplanar", never_cleared, &one_depth),
 	KB_SUBTEST("two-framebuffers", two_framebuffers, NULL),
 	KB_SUBTEST_END
 };

@@ -78,6 +78,16 @@ alpha_to_coverage(void *data)
 	return draw_and_check(&p);
 }
 
+/** This one changes the color. */
+static enum piglit_result
+alpha_to_one(void *data)
+{
+	struct peel p = make();
+
+	glEnable(GL_SAMPLE_ALPHA_TO_ONE);
+	return draw_and_check(&p);
+}
+
 /** The sample mask that a shader writes. */
 static enum piglit_result
 shader_sample_mask(void *data)
@@ -99,6 +109,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("sample-coverage", sample_coverage, NULL),
 	KB_SUBTEST("sample-coverage-inverted", sample_coverage, ""),
 	KB_SUBTEST("alpha-to-coverage", alpha_to_coverage, NULL),
+	KB_SUBTEST("alpha-to-one", alpha_to_one, NULL),
 	KB_SUBTEST("shader-sample-mask", shader_sample_mask, NULL),
 	KB_SUBTEST_END
 };

@@ -169,6 +169,62 @@ depth_clamp(void *data)
 	return draw_captured_and_check(&p);
 }
 
+/** The viewport that a primitive selects is not ignored. */
+static enum piglit_result
+viewport_index(void *data)
+{
+	static const int corners[6][2] = {
+		{ -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, -1 }, { 1, 1 }, { -1, 1 }
+	};
+	struct peel p = make();
+	struct peel_quad q;
+
+	if (!piglit_is_extension_supported("GL_ARB_viewport_array")) {
+		printf("no viewport arrays here\n");
+		peel_end(&p, true);
+		return PIGLIT_SKIP;
+	}
+	p.program = kb_use_glsl(
+		"#version 150 compatibility\n"
+		"void main() { gl_Position = gl_Vertex; }\n",
+		"#version 150 compatibility\n"
+		"#extension GL_ARB_viewport_array: require\n"
+		"layout(triangles) in;\n"
+		"layout(triangle_strip, max_vertices = 3) out;\n"
+		"uniform int viewport;\n"
+		"void main() {\n"
+		"  for (int i = 0; i < 3; i++) {\n"
+		"    gl_ViewportIndex = viewport;\n"
+		"    gl_Position = gl_in[i].gl_Position;\n"
+		"    EmitVertex();\n"
+		"  }\n"
+		"}\n",
+		"#version 150 compatibility\n"
+		"uniform vec4 color;\nout vec4 o;\n"
+		"void main() { o = color; }\n");
+	for (int i = 0; i < NUM; i++) {
+		const int v = i % 3;
+		float color[4];
+
+		q = (struct peel_quad) {
+			7 * v, 5 * v, 7 * v + 20, 5 * v + 16,
+			(1 + i * 3 % NUM) / 16., i
+		};
+		glViewportIndexedf(v, q.x0, q.y0, 20, 16);
+		for (int c = 0; c < 4; c++)
+			color[c] = peel_color_code(p.color[0], 0, c, i) / 255.;
+		glUniform4fv(glGetUniformLocation(p.program, "color"), 1,
+			     color);
+		glUniform1i(glGetUniformLocation(p.program, "viewport"), v);
+		glBegin(GL_TRIANGLES);
+		for (int j = 0; j < 6; j++)
+			glVertex3f(corners[j][0], corners[j][1], q.z);
+		glEnd();
+		peel_draw_model(&p, &q, 1);
+	}
+	return peel_end(&p, peel_check(&p));
+}
+
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("scissor", scissor, NULL),
 	KB_SUBTEST("discard", discard, NULL),
@@ -178,6 +234,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("stipple", stipple, NULL),
 	KB_SUBTEST("polygon-state", polygon_state, NULL),
 	KB_SUBTEST("depth-clamp", depth_clamp, NULL),
+	KB_SUBTEST("viewport-index", viewport_index, NULL),
 	KB_SUBTEST_END
 };
 
