@@ -14,13 +14,13 @@ h1 { font-size: 1.6rem; line-height: 1.2; } h2 { margin-top: 2.5rem; border-top:
 p, ul, dl { max-width: 46rem; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0 1rem; }
 dt { color: #555; } dd { margin: 0; overflow-wrap: anywhere; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr));
-           gap: 1rem; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 22rem), 1fr));
+           gap: 1.5rem 1rem; }
 figure { margin: 0; } figure svg { width: 100%; height: auto; }
 figcaption { font-size: .9rem; color: #333; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
-caption { text-align: left; padding: .5rem 0; }
+.caption { font-size: .9rem; }
 th, td { padding: .15rem .5rem; text-align: right; white-space: nowrap; }
 th { white-space: normal; vertical-align: bottom; border-bottom: 1px solid #888; font-weight: 600; }
 th.text, td.text { text-align: left; }
@@ -29,8 +29,8 @@ tr.ours td.text { font-weight: 600; }
 @media print {
   body { font-size: 9pt; padding: 0; max-width: none; } table { font-size: 6.5pt; }
   th, td { padding: .05rem .25rem; } .scroll { overflow: visible; }
-  .figures { grid-template-columns: 1fr 1fr; }
-  figure, tr { break-inside: avoid; } h2 { break-after: avoid; }
+  .figures { display: block; } figure { display: inline-block; width: 49%; }
+  figure, tr { break-inside: avoid; } h2, h2 + p { break-after: avoid; }
 }
 """
 
@@ -87,7 +87,7 @@ def _table(caption, head, lines):
         columns = "".join(f"<td{kind}>{escape(value)}</td>"
                           for value, kind in zip(values, kinds, strict=True))
         body += f'<tr class="{row_class}">{columns}</tr>\n'
-    return (f'<div class="scroll"><table><caption>{caption}</caption>'
+    return (f'<p class="caption">{caption}</p>\n<div class="scroll"><table>'
             f"<thead><tr>{cells}</tr></thead>\n<tbody>\n{body}</tbody></table></div>\n")
 
 

@@ -82,14 +82,14 @@ def _svg(figure, title):
 
 
 def _axes():
-    figure, axes = pyplot.subplots(figsize=(6.2, 4.2))
+    figure, axes = pyplot.subplots(figsize=(4.7, 3.5))  # letters stay legible at the width of a phone
     return figure, axes
 
 
 def _legend(axes, look, all_series):
     handles = [Line2D([], [], label=name_of(series), **look.of(series)) for series in all_series]
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.48, -0.15), ncol=3,
-                frameon=False, fontsize=8.5, columnspacing=1.2, handlelength=2.6)
+    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.46, -0.18), ncol=2,
+                frameon=False, fontsize=9, columnspacing=1.2, handlelength=2.6)
 
 
 def _plain_numbers(axis):
@@ -130,7 +130,7 @@ def _label_errors(axes, rows):
     for error, ks in groups:
         axes.annotate("k = " + ", ".join(map(str, sorted(ks))), (1, error), (4, 0),
                       xycoords=("axes fraction", "data"), textcoords="offset points",
-                      va="center", fontsize=9, color="#333333")
+                      va="center", fontsize=9.5, color="#333333")
 
 
 def error_against_time(rows, look):
@@ -143,7 +143,8 @@ def error_against_time(rows, look):
         axes.errorbar([p.ratio_median for p in points], [_error(p) for p in points],
                       xerr=_spread(points), elinewidth=0.8, **look.of(series))
     _plain_numbers(axes.xaxis)
-    axes.set_xlabel("time, as a multiple of an opaque z-buffered pass")
+    _plain_numbers(axes.yaxis)
+    axes.set_xlabel("time / opaque z-buffered pass")
     axes.set_ylabel("RMS error against all fragments")
     base = next(row.ms_median for row in rows if row.method == BASE)
     top = axes.secondary_xaxis("top", functions=(lambda x: x * base, lambda x: x / base))
@@ -171,7 +172,9 @@ def _against_k(rows, look, value, label, spread=None):
                       [value(p) for p in points], yerr=spread(points) if spread else None,
                       elinewidth=0.8, **look.of(series))
     _plain_numbers(axes.yaxis)
-    axes.set_xticks(sorted({row.k for row in rows}))
+    ks = sorted({row.k for row in rows})
+    axes.set_xlim(ks[0] / 1.35, ks[-1] * 1.35)
+    axes.set_xticks(ks)
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(lambda k, _: f"{k:g}"))
     axes.grid(axis="x", visible=False)
