@@ -14,6 +14,7 @@
 #include "gallivm/lp_bld_init.h"
 #include "gallivm/lp_bld_swizzle.h"
 
+#include "lp_bld_kbuf_channel.h"
 #include "lp_kbuf_tile.h"
 
 #define MAX_LANES 8
@@ -388,152 +389,6 @@ store_words_aos(const struct lp_kbuf_pixels *pixels, LLVMValueRef mask,
 }
 
 
-/*
- * Channels.
- */
-
-static LLVMValueRef
-decode_channel(const struct lp_kbuf_pixels *pixels,
-               const struct util_format_channel_description *chan,
-               const LLVMValueRef words[4])
-{
-   struct gallivm_state *gallivm = pixels->gallivm;
-   LLVMBuilderRef builder = gallivm->builder;
-   const struct lp_type type = pixels->type;
-   const struct lp_type itype = lp_int_type(type);
-   LLVMTypeRef vec_type = lp_build_vec_type(gallivm, type);
-   const unsigned start = chan->shift % 32;
-   LLVMValueRef value = words[chan->shift / 32];
-
-   /* Bring the channel to the top, then down, with its sign if it has one. */
-   if (chan->size < 32 && chan->type != UTIL_FORMAT_TYPE_VOID) {
-      const unsigned left = 32 - start - chan->size;
-      LLVMValueRef down = lp_build_const_int_vec(gallivm, itype,
-                                                 32 - chan->size);
-
-      if (left)
-         value = LLVMBuildShl(builder, value,
-                              lp_build_const_int_vec(gallivm, itype, left), "");
-      value = chan->type == UTIL_FORMAT_TYPE_SIGNED ?
-         LLVMBuildAShr(builder, value, down, "") :
-         LLVMBuildLShr(builder, value, down, "");
-   }
-
-   switch (chan->type) {
-   case UTIL_FORMAT_TYPE_UNSIGNED:
-      return lp_build_unsigned_norm_to_float(gallivm, chan->size, type, value);
-
-   case UTIL_FORMAT_TYPE_SIGNED: {
-      struct lp_build_context bld;
-      const double max = (1ULL << (chan->size - 1)) - 1;
-
-      lp_build_context_init(&bld, gallivm, type);
-      value = LLVMBuildSIToFP(builder, value, vec_type, "");
-      value = LLVMBuildFMul(builder, value,
-                            lp_build_const_vec(gallivm, type, 1.0 / max), "");
-      return lp_build_max(&bld, value, lp_build_const_vec(gallivm, type, -1.0));
-   }
-
-   case UTIL_FORMAT_TYPE_FLOAT:
-      if (chan->size == 16) {
-         value = LLVMBuildTrunc(builder, value,
-                                int_type(pixels, 16, type.length), "");
-         return lp_build_half_to_float(gallivm, value);
-      }
-      assert(chan->size == 32);
-      return LLVMBuildBitCast(builder, value, vec_type, "");
-
-   default:
-      return LLVMGetUndef(vec_type);
-   }
-}
-
-
-/** Integers are in the guise of floats.  They are clamped. */
-static LLVMValueRef
-encode_integer(const struct lp_kbuf_pixels *pixels,
-               const struct util_format_channel_description *chan,
-               LLVMValueRef value)
-{
-   struct gallivm_state *gallivm = pixels->gallivm;
-   LLVMBuilderRef builder = gallivm->builder;
-   const bool sign = chan->type == UTIL_FORMAT_TYPE_SIGNED;
-   struct lp_type type = lp_int_type(pixels->type);
-   struct lp_build_context bld;
-
-   type.sign = sign;
-   lp_build_context_init(&bld, gallivm, type);
-   value = LLVMBuildBitCast(builder, value, bld.vec_type, "");
-   if (chan->size == 32)
-      return value;
-
-   const uint32_t mask = (1u << chan->size) - 1;
-   const int32_t max = sign ? mask >> 1 : mask;
-   value = lp_build_min(&bld, value, lp_build_const_int_vec(gallivm, type, max));
-   if (sign) {
-      value = lp_build_max(&bld, value,
-                           lp_build_const_int_vec(gallivm, type, -max - 1));
-      value = LLVMBuildAnd(builder, value,
-                           lp_build_const_int_vec(gallivm, type, mask), "");
-   }
-   return value;
-}
-
-
-/** The channel's bits, at bit 0 of a word. */
-static LLVMValueRef
-encode_channel(const struct lp_kbuf_pixels *pixels,
-               const struct util_format_channel_description *chan,
-               LLVMValueRef value)
-{
-   struct gallivm_state *gallivm = pixels->gallivm;
-   LLVMBuilderRef builder = gallivm->builder;
-   const struct lp_type type = pixels->type;
-   const struct lp_type itype = lp_int_type(type);
-   LLVMTypeRef int_vec_type = int_type(pixels, 32, type.length);
-   struct lp_build_context bld;
-
-   lp_build_context_init(&bld, gallivm, type);
-
-   if (chan->pure_integer)
-      return encode_integer(pixels, chan, value);
-
-   switch (chan->type) {
-   case UTIL_FORMAT_TYPE_UNSIGNED:
-      value = lp_build_clamp_zero_one_nanzero(&bld, value);
-      if (chan->size > 16) {
-         return lp_build_clamped_float_to_unsigned_norm(gallivm, type,
-                                                        chan->size, value);
-      }
-      value = lp_build_mul(&bld, value,
-                           lp_build_const_vec(gallivm, type,
-                                              (1u << chan->size) - 1));
-      return lp_build_iround(&bld, value);
-
-   case UTIL_FORMAT_TYPE_SIGNED: {
-      const uint32_t max = (1u << (chan->size - 1)) - 1;
-
-      value = lp_build_clamp(&bld, value,
-                             lp_build_const_vec(gallivm, type, -1.0), bld.one);
-      value = lp_build_mul(&bld, value, lp_build_const_vec(gallivm, type, max));
-      value = lp_build_iround(&bld, value);
-      return LLVMBuildAnd(builder, value,
-                          lp_build_const_int_vec(gallivm, itype, 2 * max + 1), "");
-   }
-
-   default:
-      assert(chan->type == UTIL_FORMAT_TYPE_FLOAT);
-      if (chan->size == 16) {
-         value = lp_build_float_to_half(gallivm, value);
-         value = LLVMBuildBitCast(builder, value,
-                                  int_type(pixels, 16, type.length), "");
-         return LLVMBuildZExt(builder, value, int_vec_type, "");
-      }
-      return LLVMBuildBitCast(builder, value, int_vec_type, "");
-   }
-}
-
-
 bool
 lp_kbuf_format_needs_denormals(const struct util_format_description *desc)
 {
@@ -564,7 +419,7 @@ lp_build_kbuf_load(const struct lp_kbuf_pixels *pixels, LLVMValueRef rgba[4])
       lp_build_unpack_rgba_soa(gallivm, desc, pixels->type, words[0], rgba);
    } else {
       for (unsigned c = 0; c < desc->nr_channels; c++)
-         channels[c] = decode_channel(pixels, &desc->channel[c], words);
+         channels[c] = lp_build_kbuf_decode_channel(pixels, &desc->channel[c], words);
       lp_build_format_swizzle_soa(desc, &bld, channels, rgba);
    }
 }
@@ -648,7 +503,7 @@ lp_build_kbuf_encode(const struct lp_kbuf_pixels *pixels, unsigned write_mask,
       if (!chan || !(write_mask & (1 << comp)))
          continue;
 
-      LLVMValueRef value = encode_channel(pixels, chan, rgba[comp]);
+      LLVMValueRef value = lp_build_kbuf_encode_channel(pixels, chan, rgba[comp]);
       const unsigned w = chan->shift / 32, start = chan->shift % 32;
       if (start) {
          value = LLVMBuildShl(builder, value,

@@ -33,6 +33,9 @@ struct lp_kbuf_pixels
    const struct util_format_description *desc;
    LLVMValueRef rows[2];       /**< byte pointers, [1] is NULL in 1D */
    LLVMValueRef words;         /**< or this, in the thread's copy of the tile */
+
+   /** Encode by way of 8 or 16 bits a channel, as blending does. */
+   bool as_blending;
 };
 
 /** Whether conversions need denormals, which are off in raster threads. */

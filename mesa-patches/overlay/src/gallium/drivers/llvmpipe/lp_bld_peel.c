@@ -511,6 +511,7 @@ encode_fragment(struct peel_context *ctx, LLVMValueRef depth)
          .gallivm = ctx->gallivm,
          .type = params->type,
          .desc = util_format_description(key->cbuf_format[i]),
+         .as_blending = true,
       };
       lp_build_kbuf_encode(&pixels, 0xf, params->colors[i], &ctx->fragment[w]);
       w += lp_peel_color_words(key->cbuf_format[i]);
@@ -521,32 +522,24 @@ encode_fragment(struct peel_context *ctx, LLVMValueRef depth)
 }
 
 
-/**
- * Store what a layer holds from now on: in the lanes of moved the layer in
- * front of it, else in the lanes of active the fragment, else what was there.
- *
- * \param moved  NULL: nothing is in front
- */
+/** Store new words of a layer in the lanes of active; the others keep theirs. */
 static void
-store_layer(struct peel_context *ctx, LLVMValueRef ptr,
-            LLVMValueRef active, LLVMValueRef moved,
-            const LLVMValueRef *front, const LLVMValueRef *old)
+store_layer(struct peel_context *ctx, LLVMValueRef ptr, LLVMValueRef active,
+            const LLVMValueRef *words, const LLVMValueRef *old)
 {
    for (unsigned w = 0; w < ctx->num_words; w++) {
-      LLVMValueRef value = ctx->fragment[w];
+      LLVMValueRef value;
 
       if (!ctx->bits[w])
          continue;
-      if (moved)
-         value = select_lanes(ctx, moved, front[w], value);
       if (!~ctx->bits[w]) {
-         value = select_lanes(ctx, active, value, old[w]);
+         value = select_lanes(ctx, active, words[w], old[w]);
       } else {
          /* See store_words() in lp_bld_kbuf_format.c. */
          LLVMValueRef changed =
             and(ctx, active, lp_build_const_int_vec(ctx->gallivm, ctx->type,
                                                     ctx->bits[w]));
-         value = LLVMBuildXor(ctx->builder, old[w], value, "");
+         value = LLVMBuildXor(ctx->builder, old[w], words[w], "");
          value = LLVMBuildXor(ctx->builder, and(ctx, value, changed), old[w], "");
       }
       store_vec(ctx, value, ptr, w * LP_PEEL_WORD_SIZE);
@@ -554,25 +547,41 @@ store_layer(struct peel_context *ctx, LLVMValueRef ptr,
 }
 
 
+static void
+load_layer(struct peel_context *ctx, LLVMValueRef ptr, LLVMValueRef *words)
+{
+   for (unsigned w = 0; w < ctx->num_words; w++)
+      words[w] = load_vec(ctx, ptr, w * LP_PEEL_WORD_SIZE);
+}
+
+
 /**
  * From the last layer to the front, move layers back by one where the
  * fragment goes before them.
+ *
+ * Neighboring pixels mostly agree on the place, so that several layers at
+ * once can be compared by the foremost of them, and moved in all active lanes.
  */
 static void
 insert(struct peel_context *ctx, LLVMValueRef first_active,
        LLVMValueRef *last)
 {
+   enum { STEP = 4 };
    struct gallivm_state *gallivm = ctx->gallivm;
    LLVMBuilderRef builder = ctx->builder;
    const int layer_size = ctx->num_words * LP_PEEL_WORD_SIZE;
    LLVMTypeRef ptr_type = LLVMTypeOf(ctx->layers);
-   LLVMValueRef old[MAX_WORDS], front[MAX_WORDS];
+   LLVMValueRef old[MAX_WORDS], front[MAX_WORDS], words[MAX_WORDS];
 
    LLVMBasicBlockRef start = LLVMGetInsertBlock(builder);
    LLVMBasicBlockRef loop = lp_build_insert_new_block(gallivm, "peel_loop");
+   LLVMBasicBlockRef try_step = lp_build_insert_new_block(gallivm, "peel_try");
+   LLVMBasicBlockRef step = lp_build_insert_new_block(gallivm, "peel_step");
+   LLVMBasicBlockRef one = lp_build_insert_new_block(gallivm, "peel_one");
    LLVMBasicBlockRef move = lp_build_insert_new_block(gallivm, "peel_move");
    LLVMBasicBlockRef first = lp_build_insert_new_block(gallivm, "peel_first");
    LLVMBasicBlockRef end = lp_build_insert_new_block(gallivm, "peel_end");
+   LLVMValueRef step_end = const_offset(ctx, ctx->layers, STEP * layer_size);
 
    LLVMBuildBr(builder, loop);
 
@@ -586,16 +595,46 @@ insert(struct peel_context *ctx, LLVMValueRef first_active,
       LLVMAddIncoming(old[w], &last[w], &start, 1);
    }
    LLVMBuildCondBr(builder,
+                   LLVMBuildICmp(builder, LLVMIntUGE, ptr, step_end, ""),
+                   try_step, one);
+
+   LLVMPositionBuilderAtEnd(builder, try_step);
+   LLVMValueRef foremost =
+      load_vec(ctx, const_offset(ctx, ptr, -STEP * layer_size), 0);
+   LLVMValueRef stops =
+      and_not(ctx, active, passes(ctx, ctx->fragment[0], foremost));
+   LLVMBuildCondBr(builder, any(ctx, stops), one, step);
+
+   LLVMPositionBuilderAtEnd(builder, step);
+   memcpy(words, old, sizeof words);
+   LLVMValueRef step_ptr = ptr;
+   for (unsigned i = 0; i < STEP; i++) {
+      LLVMValueRef front_ptr = const_offset(ctx, step_ptr, -layer_size);
+
+      load_layer(ctx, front_ptr, front);
+      store_layer(ctx, step_ptr, active, front, words);
+      memcpy(words, front, sizeof words);
+      step_ptr = front_ptr;
+   }
+   LLVMAddIncoming(ptr, &step_ptr, &step, 1);
+   LLVMAddIncoming(active, &active, &step, 1);
+   for (unsigned w = 0; w < ctx->num_words; w++)
+      LLVMAddIncoming(old[w], &words[w], &step, 1);
+   LLVMBuildBr(builder, loop);
+
+   LLVMPositionBuilderAtEnd(builder, one);
+   LLVMBuildCondBr(builder,
                    LLVMBuildICmp(builder, LLVMIntEQ, ptr, ctx->layers, ""),
                    first, move);
 
    LLVMPositionBuilderAtEnd(builder, move);
    LLVMValueRef front_ptr = const_offset(ctx, ptr, -layer_size);
-   for (unsigned w = 0; w < ctx->num_words; w++)
-      front[w] = load_vec(ctx, front_ptr, w * LP_PEEL_WORD_SIZE);
+   load_layer(ctx, front_ptr, front);
    LLVMValueRef moved =
       and(ctx, active, passes(ctx, ctx->fragment[0], front[0]));
-   store_layer(ctx, ptr, active, moved, front, old);
+   for (unsigned w = 0; w < ctx->num_words; w++)
+      words[w] = select_lanes(ctx, moved, front[w], ctx->fragment[w]);
+   store_layer(ctx, ptr, active, words, old);
    LLVMAddIncoming(ptr, &front_ptr, &move, 1);
    LLVMAddIncoming(active, &moved, &move, 1);
    for (unsigned w = 0; w < ctx->num_words; w++)
@@ -603,7 +642,7 @@ insert(struct peel_context *ctx, LLVMValueRef first_active,
    LLVMBuildCondBr(builder, any(ctx, moved), loop, end);
 
    LLVMPositionBuilderAtEnd(builder, first);
-   store_layer(ctx, ptr, active, NULL, NULL, old);
+   store_layer(ctx, ptr, active, ctx->fragment, old);
    LLVMBuildBr(builder, end);
 
    LLVMPositionBuilderAtEnd(builder, end);

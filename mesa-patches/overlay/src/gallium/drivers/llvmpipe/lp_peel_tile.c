@@ -69,12 +69,22 @@ group_count(const struct lp_peel_tile *tile, unsigned block, unsigned sample,
 }
 
 
+static uint32_t
+depth_mask(const struct lp_peel_depth_format *format)
+{
+   return format->width == 32 ? ~0u : (1u << format->width) - 1;
+}
+
+
+/*
+ * From memory.
+ */
+
 static void
 load_depth(uint32_t *words, const uint8_t *block, unsigned stride,
            const struct lp_peel_depth_format *format)
 {
-   const uint32_t mask =
-      format->width == 32 ? ~0u : (1u << format->width) - 1;
+   const uint32_t mask = depth_mask(format);
    uint32_t pixels[2 * 16];
 
    lp_peel_load_pixels(pixels, block, stride, format->bytes);
@@ -86,87 +96,76 @@ load_depth(uint32_t *words, const uint8_t *block, unsigned stride,
 
 
 static void
-store_depth(const uint32_t *const quads[4], uint8_t *block, unsigned stride,
-            const struct lp_peel_depth_format *format)
-{
-   uint32_t pixels[2 * 16];
-   const uint32_t *pixel_quads[4];
-
-   for (unsigned i = 0; i < 16; i++) {
-      pixels[i] = lp_peel_depth_bits(format, quads[i / 4][i % 4])
-                  << format->shift;
-   }
-
-   if (format->has_stencil) {
-      const uint32_t mask =
-         format->width == 32 ? ~0u :
-         ((1u << format->width) - 1) << format->shift;
-      uint32_t old[2 * 16];
-
-      lp_peel_load_pixels(old, block, stride, format->bytes);
-      for (unsigned i = 0; i < 16; i++)
-         pixels[i] |= old[i] & ~mask;
-      memcpy(pixels + 16, old + 16, 16 * sizeof *pixels);
-   }
-
-   for (unsigned q = 0; q < 4; q++)
-      pixel_quads[q] = pixels + 4 * q;
-   lp_peel_store_pixels(pixel_quads, block, stride, format->bytes);
-}
-
-
-static void
-load_layer(struct lp_peel_tile *tile, uint32_t *words, unsigned block,
+load_layer(const struct lp_peel_tile *tile, uint32_t *words, unsigned block,
            unsigned layer, unsigned sample)
 {
    const struct lp_rasterizer_task *task = tile->task;
    const struct lp_scene *scene = task->scene;
 
-   load_depth(words, depth_block(task, block, layer, sample),
-              scene->zsbuf.stride, &tile->peel->depth);
+   if (!tile->cleared_depth) {
+      load_depth(words, depth_block(task, block, layer, sample),
+                 scene->zsbuf.stride, &tile->peel->depth);
+   }
    words += 16;
 
    for (unsigned i = 0; i < scene->fb.nr_cbufs; i++) {
-      if (scene->fb.cbufs[i]) {
-         const unsigned bytes = scene->cbufs[i].format_bytes;
+      const unsigned bytes = scene->cbufs[i].format_bytes;
 
+      if (!scene->fb.cbufs[i])
+         continue;
+      if (!(tile->cleared_colors & (1 << i))) {
          lp_peel_load_pixels(words, color_block(task, i, block, layer, sample),
                              scene->cbufs[i].stride, bytes);
-         words += DIV_ROUND_UP(bytes, 4) * 16;
       }
+      words += DIV_ROUND_UP(bytes, 4) * 16;
    }
 }
 
 
 static void
-store_layer(const struct lp_peel_tile *tile, unsigned block, unsigned layer,
-            unsigned sample)
+fill_word(uint32_t *words, uint32_t value)
 {
-   const struct lp_rasterizer_task *task = tile->task;
-   const struct lp_scene *scene = task->scene;
-   const uint32_t *quads[4];
+   for (unsigned i = 0; i < 16; i++)
+      words[i] = value;
+}
 
-   for (unsigned q = 0; q < 4; q++) {
-      const unsigned count = *group_count(tile, block, sample, q);
 
-      quads[q] = tile_words(tile, block, MIN2(layer, count), sample) + 4 * q;
+/** \return whether all of the layer has been cleared */
+static bool
+clear_layer(const struct lp_peel_tile *tile, uint32_t *words)
+{
+   const struct lp_peel_depth_format *format = &tile->peel->depth;
+   const struct lp_scene *scene = tile->task->scene;
+   bool all = tile->cleared_depth;
+
+   if (tile->cleared_depth) {
+      const uint32_t bits =
+         (tile->depth_clear.clear_zstencil.value >> format->shift) &
+         depth_mask(format);
+
+      fill_word(words, lp_peel_compare_bits(format, bits));
    }
-   store_depth(quads, depth_block(task, block, layer, sample),
-               scene->zsbuf.stride, &tile->peel->depth);
+   words += 16;
 
-   for (unsigned i = 0, words = 16; i < scene->fb.nr_cbufs; i++) {
-      if (scene->fb.cbufs[i]) {
-         const unsigned bytes = scene->cbufs[i].format_bytes;
-         const uint32_t *color_quads[4];
+   for (unsigned i = 0; i < scene->fb.nr_cbufs; i++) {
+      const unsigned bytes = scene->cbufs[i].format_bytes;
 
-         for (unsigned q = 0; q < 4; q++)
-            color_quads[q] = quads[q] + words;
-         lp_peel_store_pixels(color_quads,
-                              color_block(task, i, block, layer, sample),
-                              scene->cbufs[i].stride, bytes);
-         words += DIV_ROUND_UP(bytes, 4) * 16;
+      if (!scene->fb.cbufs[i])
+         continue;
+      for (unsigned w = 0; w < DIV_ROUND_UP(bytes, 4); w++, words += 16) {
+         if (tile->cleared_colors & (1 << i)) {
+            const union util_color *color =
+               &tile->color_clears[i].clear_rb->color_val;
+            uint32_t word = 0;
+
+            memcpy(&word, &color->ui[w], MIN2(bytes - 4 * w, 4));
+            fill_word(words, word);
+         } else {
+            all = false;
+         }
       }
    }
+   return all;
 }
 
 
@@ -182,6 +181,8 @@ load_block(struct lp_peel_tile *tile, uint32_t block)
       for (unsigned layer = 0; layer < peel->num_layers; layer++) {
          uint32_t *words = tile_words(tile, block, layer, s);
 
+         if (clear_layer(tile, words))
+            break;
          load_layer(tile, words, block, layer, s);
          if (layer && memcmp(words, (uint8_t *)words - layer_size, layer_size))
             count = layer;
@@ -195,27 +196,196 @@ load_block(struct lp_peel_tile *tile, uint32_t block)
 }
 
 
+/*
+ * To memory.
+ */
+
+static void
+store_depth(const struct lp_peel_tile *tile, const uint32_t *const quads[4],
+            uint8_t *block)
+{
+   const struct lp_peel_depth_format *format = &tile->peel->depth;
+   const unsigned stride = tile->task->scene->zsbuf.stride;
+   uint32_t pixels[2 * 16];
+   const uint32_t *pixel_quads[4];
+
+   for (unsigned q = 0; q < 4; q++) {
+      pixel_quads[q] = pixels + 4 * q;
+      for (unsigned i = 0; i < 4; i++) {
+         pixels[4 * q + i] =
+            lp_peel_depth_bits(format, quads[q][i]) << format->shift;
+      }
+   }
+
+   if (format->has_stencil) {
+      const uint64_t kept_mask =
+         ~((uint64_t)depth_mask(format) << format->shift);
+      const uint64_t clear_mask =
+         tile->cleared_depth ? tile->depth_clear.clear_zstencil.mask : 0;
+      const uint64_t clear_value = tile->depth_clear.clear_zstencil.value;
+      uint32_t old[2 * 16];
+
+      lp_peel_load_pixels(old, block, stride, format->bytes);
+      for (unsigned w = 0; w < format->bytes / 4; w++) {
+         const uint32_t clear = clear_mask >> (32 * w);
+         const uint32_t value = clear_value >> (32 * w);
+         const uint32_t kept = kept_mask >> (32 * w);
+
+         for (unsigned i = 0; i < 16; i++) {
+            const uint32_t stencil =
+               ((old[16 * w + i] & ~clear) | (value & clear)) & kept;
+
+            pixels[16 * w + i] = (w ? 0 : pixels[i]) | stencil;
+         }
+      }
+   }
+   lp_peel_store_pixels(pixel_quads, block, stride, format->bytes);
+}
+
+
+/** One layer and sample of a row of blocks, of those that are in use. */
+static void
+store_layer(const struct lp_peel_tile *tile, unsigned row, unsigned layer,
+            unsigned sample)
+{
+   const struct lp_rasterizer_task *task = tile->task;
+   const struct lp_scene *scene = task->scene;
+   const uint32_t *quads[TILE_SIZE / 4][4];
+   unsigned blocks[TILE_SIZE / 4], num_blocks = 0;
+
+   for (unsigned x = 0; x < TILE_SIZE / 4; x++) {
+      const unsigned block = row * (TILE_SIZE / 4) + x;
+
+      if (!tile->valid[block])
+         continue;
+      for (unsigned q = 0; q < 4; q++) {
+         const unsigned count = *group_count(tile, block, sample, q);
+
+         quads[num_blocks][q] =
+            tile_words(tile, block, MIN2(layer, count), sample) + 4 * q;
+      }
+      blocks[num_blocks++] = block;
+   }
+
+   for (unsigned b = 0; b < num_blocks; b++) {
+      store_depth(tile, quads[b], depth_block(task, blocks[b], layer, sample));
+      for (unsigned q = 0; q < 4; q++)
+         quads[b][q] += 16;
+   }
+
+   for (unsigned i = 0; i < scene->fb.nr_cbufs; i++) {
+      const unsigned bytes = scene->cbufs[i].format_bytes;
+
+      if (!scene->fb.cbufs[i])
+         continue;
+      for (unsigned b = 0; b < num_blocks; b++) {
+         lp_peel_store_pixels(quads[b],
+                              color_block(task, i, blocks[b], layer, sample),
+                              scene->cbufs[i].stride, bytes);
+         for (unsigned q = 0; q < 4; q++)
+            quads[b][q] += DIV_ROUND_UP(bytes, 4) * 16;
+      }
+   }
+}
+
+
+static void
+store_blocks(struct lp_peel_tile *tile)
+{
+   const struct lp_rasterizer_task *task = tile->task;
+   const struct lp_rast_peel *peel = tile->peel;
+
+   /* Clear what is not in use by the way. */
+   if (tile->cleared_depth || tile->cleared_colors) {
+      for (unsigned y = 0; y < task->height / 4; y++) {
+         for (unsigned x = 0; x < task->width / 4; x++) {
+            const unsigned block = y * (TILE_SIZE / 4) + x;
+
+            if (!tile->valid[block])
+               load_block(tile, block);
+         }
+      }
+   }
+
+   for (unsigned row = 0; row < DIV_ROUND_UP(task->height, 4); row++) {
+      for (unsigned s = 0; s < peel->num_samples; s++) {
+         for (unsigned layer = 0; layer < peel->num_layers; layer++)
+            store_layer(tile, row, layer, s);
+      }
+   }
+}
+
+
 void
 lp_peel_tile_flush(struct lp_peel_tile *tile)
 {
-   const struct lp_rast_peel *peel = tile->peel;
+   struct lp_rasterizer_task *task = tile->task;
 
-   for (unsigned block = 0; block < LP_PEEL_TILE_BLOCKS; block++) {
-      if (!tile->valid[block])
-         continue;
-      for (unsigned s = 0; s < peel->num_samples; s++) {
-         for (unsigned layer = 0; layer < peel->num_layers; layer++)
-            store_layer(tile, block, layer, s);
-      }
+   if (tile->num_valid) {
+      store_blocks(tile);
+      memset(tile->valid, 0, sizeof tile->valid);
+      tile->num_valid = 0;
+   } else {
+      u_foreach_bit(i, tile->cleared_colors)
+         tile->dispatch[LP_RAST_OP_CLEAR_COLOR](task, tile->color_clears[i]);
+      if (tile->cleared_depth)
+         tile->dispatch[LP_RAST_OP_CLEAR_ZSTENCIL](task, tile->depth_clear);
    }
-   memset(tile->valid, 0, sizeof tile->valid);
-   tile->num_valid = 0;
+   tile->cleared_colors = 0;
+   tile->cleared_depth = false;
+
    if (tile->overflow)
-      p_atomic_set(&peel->object->overflow, 1);
+      p_atomic_set(&tile->peel->object->overflow, 1);
    tile->overflow = 0;
    tile->peel = NULL;
 }
 
+
+void
+lp_peel_tile_clear(struct lp_peel_tile *tile, unsigned cmd,
+                   const union lp_rast_cmd_arg arg)
+{
+   struct lp_rasterizer_task *task = tile->task;
+   const struct lp_rast_peel *peel = tile->peel;
+
+   /* The rest of a block at the edge may belong to the texture. */
+   if (tile->num_valid || task->width % 4 || task->height % 4) {
+      lp_peel_tile_flush(tile);
+      tile->peel = peel;
+   }
+   if (task->width % 4 || task->height % 4) {
+      tile->dispatch[cmd](task, arg);
+      return;
+   }
+
+   if (cmd == LP_RAST_OP_CLEAR_COLOR) {
+      tile->color_clears[arg.clear_rb->cbuf] = arg;
+      tile->cleared_colors |= 1 << arg.clear_rb->cbuf;
+   } else if (tile->cleared_depth) {
+      const uint64_t mask = arg.clear_zstencil.mask;
+      union lp_rast_cmd_arg *clear = &tile->depth_clear;
+
+      clear->clear_zstencil.value &= ~mask;
+      clear->clear_zstencil.value |= arg.clear_zstencil.value & mask;
+      clear->clear_zstencil.mask |= mask;
+   } else {
+      struct lp_peel_depth_format format;
+
+      lp_peel_depth_format_init(&format, task->scene->fb.zsbuf->format, false);
+      const uint64_t depth = (uint64_t)depth_mask(&format) << format.shift;
+      if ((arg.clear_zstencil.mask & depth) == depth) {
+         tile->depth_clear = arg;
+         tile->cleared_depth = true;
+      } else {
+         tile->dispatch[cmd](task, arg);
+      }
+   }
+}
+
+
+/*
+ * State.
+ */
 
 /** Make room for a tile of this layout. */
 static bool
@@ -235,31 +405,41 @@ reserve(struct lp_peel_tile *tile, size_t data_size, size_t counts_size)
 }
 
 
-bool
-lp_peel_tile_set_state(struct lp_rasterizer_task *task)
+struct lp_peel_tile *
+lp_peel_tile_begin(struct lp_rasterizer_task *task,
+                   const lp_rast_cmd_func *dispatch)
 {
    struct lp_peel_tile *tile = task->thread_data.peel_tile;
-   const struct lp_rast_peel *peel = task->state->peel;
-
-   if (tile && tile->peel &&
-       (!peel || peel->depth.reversed != tile->peel->depth.reversed ||
-        peel->object != tile->peel->object))
-      lp_peel_tile_flush(tile);
-   if (!peel)
-      return true;
 
    if (!tile) {
       tile = CALLOC_STRUCT(lp_peel_tile);
       if (!tile)
-         return false;
+         return NULL;
       tile->task = task;
       tile->load_block = load_block;
       task->thread_data.peel_tile = tile;
    }
+   tile->dispatch = dispatch;
+   return tile;
+}
+
+
+bool
+lp_peel_tile_set_state(struct lp_peel_tile *tile)
+{
+   const struct lp_rasterizer_task *task = tile->task;
+   const struct lp_rast_peel *peel = task->state->peel;
+
+   if (!peel || (tile->peel &&
+                 (peel->depth.reversed != tile->peel->depth.reversed ||
+                  peel->object != tile->peel->object)))
+      lp_peel_tile_flush(tile);
+   if (!peel)
+      return true;
 
    tile->sample_size = peel->num_layers * peel->num_words * LP_PEEL_WORD_SIZE;
    tile->block_size = peel->num_samples * tile->sample_size;
-   if (!tile->peel &&
+   if (!tile->num_valid &&
        !reserve(tile, (size_t)LP_PEEL_TILE_BLOCKS * tile->block_size,
                 LP_PEEL_TILE_BLOCKS * peel->num_samples * LP_PEEL_GROUPS *
                 sizeof(uint32_t)))
@@ -276,6 +456,52 @@ lp_peel_tile_set_state(struct lp_rasterizer_task *task)
       tile->bound_blocks_x = peel->object->blocks_x;
    }
    return true;
+}
+
+
+static int32_t
+block_farthest(struct lp_peel_tile *tile, unsigned block)
+{
+   if (!tile->valid[block])
+      return INT32_MAX;
+   if (!tile->changed[block])
+      return tile->farthest[block];
+
+   int32_t farthest = INT32_MIN;
+   for (unsigned s = 0; s < tile->peel->num_samples; s++) {
+      for (unsigned q = 0; q < 4; q++) {
+         const int32_t *depths =
+            (int32_t *)tile_words(tile, block, *group_count(tile, block, s, q),
+                                  s) + 4 * q;
+
+         for (unsigned i = 0; i < 4; i++)
+            farthest = MAX2(farthest, depths[i]);
+      }
+   }
+   if (farthest >= tile->empty)
+      farthest = INT32_MAX;
+   tile->farthest[block] = farthest;
+   tile->changed[block] = false;
+   return farthest;
+}
+
+
+int32_t
+lp_peel_tile_farthest(struct lp_peel_tile *tile, unsigned x0, unsigned y0,
+                      unsigned x1, unsigned y1)
+{
+   int32_t farthest = INT32_MIN;
+
+   for (unsigned y = y0 / 4; y <= y1 / 4; y++) {
+      for (unsigned x = x0 / 4; x <= x1 / 4; x++) {
+         const int32_t f = block_farthest(tile, y * (TILE_SIZE / 4) + x);
+
+         if (f == INT32_MAX)
+            return f;
+         farthest = MAX2(farthest, f);
+      }
+   }
+   return farthest;
 }
 
 

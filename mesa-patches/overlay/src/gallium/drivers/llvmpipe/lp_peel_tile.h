@@ -15,6 +15,9 @@
  * For each group of pixels there is a count: all layers behind that one are
  * the same as it, and are not there.  So nothing has to be done to layers
  * that have been cleared, until something comes into them.
+ *
+ * Clears are only noted.  They are done to the tile's blocks as these come
+ * into use, and to memory at the end, together with all other writing.
  */
 
 #ifndef LP_PEEL_TILE_H
@@ -28,6 +31,8 @@
 
 #include "lp_limits.h"
 #include "lp_peel.h"
+#include "lp_rast.h"
+#include "lp_scene.h"
 
 struct lp_rasterizer;
 struct lp_rasterizer_task;
@@ -57,8 +62,17 @@ struct lp_peel_tile
    uint8_t changed[LP_PEEL_TILE_BLOCKS];
 
    struct lp_rasterizer_task *task;
+   const lp_rast_cmd_func *dispatch;
    const struct lp_rast_peel *peel;  /**< NULL: no block is valid */
    unsigned num_valid;
+   int32_t farthest[LP_PEEL_TILE_BLOCKS]; /**< see lp_peel_tile_farthest() */
+
+   /* What is to be cleared before anything else. */
+   uint32_t cleared_colors;      /**< a bit for each color buffer */
+   bool cleared_depth;
+   union lp_rast_cmd_arg color_clears[PIPE_MAX_COLOR_BUFS];
+   union lp_rast_cmd_arg depth_clear;
+
    size_t data_size;     /**< what is allocated */
    size_t counts_size;
 };
@@ -70,21 +84,35 @@ lp_peel_group_quads(void)
    return MIN2(lp_native_vector_width / 128, 4);
 }
 
+/**
+ * The tile of the task, for a new bin; NULL if there is no memory.
+ *
+ * \param dispatch  does what is not done here
+ */
+struct lp_peel_tile *
+lp_peel_tile_begin(struct lp_rasterizer_task *task,
+                   const lp_rast_cmd_func *dispatch);
+
 /** Get ready for the state that the task has; false if there is no memory. */
 bool
-lp_peel_tile_set_state(struct lp_rasterizer_task *task);
+lp_peel_tile_set_state(struct lp_peel_tile *tile);
 
-/** Give all blocks back. */
+/** Clear a color buffer, or depth and stencil. */
+void
+lp_peel_tile_clear(struct lp_peel_tile *tile, unsigned cmd,
+                   const union lp_rast_cmd_arg arg);
+
+/** Give everything back: something else is about to use the buffers. */
 void
 lp_peel_tile_flush(struct lp_peel_tile *tile);
 
-/** The buffers are about to be used by something else. */
-static inline void
-lp_peel_tile_done(struct lp_peel_tile *tile)
-{
-   if (tile && tile->peel)
-      lp_peel_tile_flush(tile);
-}
+/**
+ * Fragments at this depth or farther can not be inserted into any of the
+ * blocks; INT32_MAX if there is no such depth.
+ */
+int32_t
+lp_peel_tile_farthest(struct lp_peel_tile *tile, unsigned x0, unsigned y0,
+                      unsigned x1, unsigned y1);
 
 void
 lp_peel_tiles_destroy(struct lp_rasterizer *rast);
