@@ -47,7 +47,9 @@ code_of(const struct peel_format *format, int component, uint32_t bits)
 	case PEEL_SNORM:
 		return (uint32_t)lrintf(value * (mask / 2)) & mask;
 	case PEEL_FLOAT:
-		return b == 32 ? bits : piglit_half_from_float(value);
+		/* 10 and 11 bits are those of a half but for the sign. */
+		return b == 32 ? bits : piglit_half_from_float(value) >>
+			(b == 16 ? 0 : 15 - b);
 	case PEEL_DEPTH:
 		return b == 32 ? bits : b == 24 ? depth_24(value) :
 			llrint((double)value * mask);

@@ -97,6 +97,58 @@ random_draw(struct peel *p, int depths, uint32_t *id)
 	peel_draw(p, quads, n);
 }
 
+/** Changes of the state, of the function, and clears between draws. */
+static bool
+random_sequence(struct peel *p, const GLenum funcs[2], uint32_t components,
+		int depths)
+{
+	uint32_t id = 1;
+
+	for (int i = 0; i < 25; i++) {
+		random_masks(components);
+		random_scissor(p);
+		glDepthFunc(funcs[peel_random(2)]);
+		switch (peel_random(16)) {
+		case 0:
+			if (peel_random(3) == 0)
+				peel_clear(p);
+			break;
+		case 1:
+			if (peel_random(4) == 0 && !peel_check(p))
+				return false;
+			break;
+		default:
+			random_draw(p, depths, &id);
+		}
+	}
+	return peel_check(p);
+}
+
+/** The same draws in passes, until nothing is behind the last layer. */
+static bool
+random_passes(struct peel *p, int seed, uint32_t components, int depths)
+{
+	for (int pass = 0; pass < 8; pass++) {
+		uint32_t id = 1;
+
+		if (pass > 0)
+			peel_next(p);
+		peel_seed(seed);
+		for (int i = 0; i < 12; i++) {
+			random_masks(components);
+			random_scissor(p);
+			random_draw(p, depths, &id);
+		}
+		if (!peel_check(p)) {
+			printf("in pass %d\n", pass);
+			return false;
+		}
+		if (!p->model.overflow)
+			break;
+	}
+	return true;
+}
+
 static bool
 scene(int seed, int samples)
 {
@@ -104,46 +156,19 @@ scene(int seed, int samples)
 	static const GLenum greater[] = { GL_GREATER, GL_GEQUAL };
 	struct peel p;
 	const GLenum *funcs;
-	bool continues, pass = true;
-	uint32_t id = 1, components;
-	int many;
+	uint32_t components;
+	int depths;
+	bool pass;
 
 	peel_seed(seed);
 	funcs = peel_random(3) ? less : greater;
-	/* A framebuffer that continues stays with one function. */
-	continues = peel_random(2);
-	many = peel_random(2) ? 6 : 300;
+	depths = peel_random(2) ? 6 : 300;
 	glDepthFunc(funcs[0]);
 	glClearDepth(funcs == greater ? 0 : peel_random(2) ? 1 : .75);
 	p = random_framebuffer(samples);
 	components = peel_random(0x10000) | peel_random(0x10000) << 16;
-	for (int i = 0; i < 25 && pass; i++) {
-		random_masks(components);
-		random_scissor(&p);
-		if (!continues)
-			glDepthFunc(funcs[peel_random(2)]);
-		switch (peel_random(continues ? 9 : 16)) {
-		case 0:
-			if (continues)
-				peel_next(&p);
-			break;
-		case 1:
-			if (continues && peel_random(3) == 0)
-				peel_restart(&p);
-			break;
-		case 2:
-			if (peel_random(3) == 0)
-				peel_clear(&p);
-			break;
-		case 3:
-			if (peel_random(4) == 0)
-				pass = peel_check(&p);
-			break;
-		default:
-			random_draw(&p, many, &id);
-		}
-	}
-	pass = pass && peel_check(&p);
+	pass = peel_random(2) ? random_sequence(&p, funcs, components, depths) :
+		random_passes(&p, seed, components, depths);
 	glDisable(GL_SCISSOR_TEST);
 	glDepthMask(GL_TRUE);
 	glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -187,9 +212,9 @@ scenes(void *data)
 	&(const struct range) { first, last, samples }
 
 const struct piglit_subtest kbuffer_subtests[] = {
-	KB_SUBTEST("1-40", scenes, RANGE(1, 40, 0)),
-	KB_SUBTEST("41-70", scenes, RANGE(41, 70, 0)),
-	KB_SUBTEST("4-samples", scenes, RANGE(1, 20, 4)),
+	KB_SUBTEST("1-25", scenes, RANGE(1, 25, 0)),
+	KB_SUBTEST("26-45", scenes, RANGE(26, 45, 0)),
+	KB_SUBTEST("4-samples", scenes, RANGE(1, 16, 4)),
 	KB_SUBTEST_END
 };
 
