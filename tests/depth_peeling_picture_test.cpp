@@ -259,17 +259,19 @@ TEST_F(Peeling, ThreadsVectorsAndEarlyRejectionChangeNothing)
 {
     const std::string mesh = directory_ / "ties.ply";
     write_tied_soup(mesh, 30, 11);
-    // More than one tile of 64x64, and a size that is not a multiple of one.
-    for (const Arguments &passes : {Arguments{"--k", "3", "--all"}, Arguments{"--k", "8"},
-                                    Arguments{"--k", "12", "--samples", "4"}}) {
-        Arguments arguments{"--mesh", mesh, "--size", "200x150"};
-        arguments.insert(arguments.end(), passes.begin(), passes.end());
+    // Large triangles, small ones (a knot), samples. More than one tile of 64x64, and a size that
+    // is not a multiple of one.
+    for (const Arguments &scene : {Arguments{"--mesh", mesh, "--k", "3", "--all"},
+                                   Arguments{"--triangles", "20000", "--k", "2", "--all"},
+                                   Arguments{"--mesh", mesh, "--k", "12", "--samples", "4"}}) {
+        Arguments arguments = scene;
+        arguments.insert(arguments.end(), {"--size", "200x150"});
         std::string first;
         for (const std::string culling : {"0", "1"}) {
             for (const std::string width : {"256", "128"}) {
                 for (const std::string threads : {"0", "8"}) {
                     SCOPED_TRACE(fmt::format("{} culling {} width {} threads {}",
-                                             testing::PrintToString(passes), culling, width,
+                                             testing::PrintToString(scene), culling, width,
                                              threads));
                     const auto ours = peel(arguments, {{"LP_KBUF_CULL", culling},
                                                        {"LP_NATIVE_VECTOR_WIDTH", width},
