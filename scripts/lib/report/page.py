@@ -37,27 +37,28 @@ tr.ours td.text { font-weight: 600; }
 GUIDE = """
 <h2>How to read this</h2>
 <ul>
-<li><b>Time</b> is that of whole frames: clearing, the passes over the geometry and the resolve into
-a picture of 8 bits a channel, from glFinish to glFinish. Setting up, compiling shaders and reading
-back are not in it. Methods take turns frame by frame, and a <b>ratio</b> is that of a frame to the
-opaque z-buffered one of the same round on stock Mesa: what slows the machine down slows both.
-Medians, with the 5th and 95th percentiles of the rounds in the tables and as bars in the plots.</li>
-<li><b>Absolute milliseconds</b> are this machine's on that day. Ratios carry over better, though not
-to another number of processors or another processor for certain.</li>
-<li><b>err_max</b> and <b>err_share</b> compare with the exact picture of the same k, made on the CPU
-in double precision from every fragment of the scene, captured on stock Mesa by a pass that no method
-has a part in. err_share is the part of the pixels in which a channel is off by more than 1/255: above
-0 a layer is wrong or missing. Colors are kept in 8 bits a channel, which alone makes err_max up to
-1/255 = 0.0039. Methods are called exact here if their err_share is 0.</li>
-<li><b>RMS error against all fragments</b> is what is seen of leaving all but k fragments out, plus
-the rounding of colors, which is where the curves end. The opaque z-buffered picture is shown for
-scale: it is another picture.</li>
-<li><b>Bytes per pixel</b> is what a method stores beside the final picture. Of lists of all fragments
-it depends on the scene.</li>
-<li>Forms: <b>no-culling</b> is the method without early rejection of fragments that cannot be kept.
-<b>unlocked</b> leaves out a lock that GL's memory model asks for: right on a driver that runs each
-tile's fragments one after the other in order, undefined in GL. It is shown, but it is no rival in the
-summary.</li>
+<li><b>Time</b> is that of whole frames: clearing, the passes over the geometry and the resolve
+into a picture of 8 bits a channel, from glFinish to glFinish. Setting up, compiling shaders and
+reading back are not in it. Methods take turns frame by frame, and a <b>ratio</b> is that of a
+frame to the opaque z-buffered one of the same round on stock Mesa: what slows the machine down
+slows both. Medians, with the 5th and 95th percentiles of the rounds in the tables and as bars in
+the plots.</li>
+<li><b>Absolute milliseconds</b> are this machine's on that day. Ratios carry over better, though
+not to another number of processors or another processor for certain.</li>
+<li><b>err_max</b> and <b>err_share</b> compare with the exact picture of the same k, made on the
+CPU in double precision from every fragment of the scene, captured on stock Mesa by a pass that no
+method has a part in. err_share is the part of the pixels in which a channel is off by more than
+1/255: above 0 a layer is wrong or missing. Colors are kept in 8 bits a channel, which alone makes
+err_max up to 1/255 = 0.0039. Methods are called exact here if their err_share is 0.</li>
+<li><b>RMS error against all fragments</b> is what is seen of leaving all but k fragments out,
+plus the rounding of colors, which is where the curves end. The opaque z-buffered picture is shown
+for scale: it is another picture.</li>
+<li><b>Bytes per pixel</b> is what a method stores beside the final picture. Of lists of all
+fragments it depends on the scene.</li>
+<li>Forms: <b>no-culling</b> is the method without early rejection of fragments that cannot be
+kept. <b>unlocked</b> leaves out a lock that GL's memory model asks for: right on a driver that
+runs each tile's fragments one after the other in order, undefined in GL. It is shown, but it is
+no rival in the summary.</li>
 <li><b>Not measured</b>: GPUs, other sizes of picture, multisampling, scenes that change between
 frames, and the time it takes to write each method.</li>
 </ul>
@@ -123,7 +124,8 @@ def _best_of_stock(study, scene, k):
 def _summary(study):
     ours = list(dict.fromkeys(row.method for row in study.rows
                               if row.driver == "ours" and not row.variant))
-    head = [("scene", "text"), ("k", ""), ("fastest exact of stock Mesa", "text"), ("× z-buffer", "")]
+    head = [("scene", "text"), ("k", ""), ("fastest exact of stock Mesa", "text"),
+            ("× z-buffer", "")]
     for method in ours:
         head += [(f"{method} × z-buffer", ""), ("times as fast", "")]
     lines = []

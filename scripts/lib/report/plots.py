@@ -82,8 +82,8 @@ def _svg(figure, title):
 
 
 def _axes():
-    figure, axes = pyplot.subplots(figsize=(4.7, 3.5))  # letters stay legible at the width of a phone
-    return figure, axes
+    """So small that letters stay legible at the width of a phone."""
+    return pyplot.subplots(figsize=(4.7, 3.5))
 
 
 def _legend(axes, look, all_series):
