@@ -27,7 +27,7 @@ struct Row {
     std::uint64_t triangles = 0;
     std::uint64_t fragments = 0; ///< Of one pass over the geometry without a depth test.
     Spread ms;
-    Spread ratio; ///< Of each frame to that of z-buffering in the same round.
+    Spread ratio; ///< Of each frame to the z-buffered one right before it.
     int bytes_per_pixel = 0;
     Difference error;     ///< Against the exact image of the same k.
     Difference error_all; ///< Against the exact image of all fragments.

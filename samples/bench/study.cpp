@@ -16,8 +16,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <functional>
-#include <iterator>
 #include <map>
 #include <utility>
 
@@ -36,14 +34,6 @@ void progress(fmt::format_string<Arguments...> text, Arguments &&...arguments)
     std::fflush(stderr);
 }
 
-/// Quotients round by round: what slows a whole round down does not show in them.
-std::vector<double> ratios(const std::vector<double> &times, const std::vector<double> &base)
-{
-    std::vector<double> quotients;
-    std::ranges::transform(times, base, std::back_inserter(quotients), std::divides{});
-    return quotients;
-}
-
 /// A run on the scene at hand.
 struct Active {
     Run run;
@@ -51,6 +41,7 @@ struct Active {
     int id; ///< The worker's number for it.
     Row row;
     std::vector<double> times;
+    std::vector<double> ratios; ///< To the z-buffered frame right before each.
 };
 
 class Runner
@@ -145,21 +136,33 @@ private:
             row.bytes_per_pixel = made.at("bytes_per_pixel").get<int>();
             row.triangles = triangles;
             row.fragments = capture.at("fragments").get<std::uint64_t>();
-            active.push_back({run, &worker, made.at("id").get<int>(), std::move(row), {}});
+            active.push_back({run, &worker, made.at("id").get<int>(), std::move(row), {}, {}});
             // Compiles its shaders too, before frames are measured.
             find_errors(active.back());
         }
         for (int round = 1; round <= options_.rounds; ++round) {
             show_round(scene, round);
             for (Active &one : active)
-                one.times.push_back(
-                    one.worker->ask({{"do", "frame"}, {"id", one.id}}).at("ms").get<double>());
+                draw_frame(one, active.front());
         }
         for (Active &one : active) {
             one.row.ms = spread_of(one.times);
-            one.row.ratio = spread_of(ratios(one.times, active.front().times));
+            one.row.ratio = spread_of(one.ratios);
             study_.rows.push_back(std::move(one.row));
         }
+    }
+
+    /// A z-buffered frame, then one of the method: what slows the machine down slows both.
+    static void draw_frame(Active &one, Active &zbuffer)
+    {
+        const auto milliseconds = [](const Active &run) {
+            return run.worker->ask({{"do", "frame"}, {"id", run.id}}).at("ms").get<double>();
+        };
+        const double base = milliseconds(zbuffer);
+        zbuffer.times.push_back(base);
+        if (&one != &zbuffer)
+            one.times.push_back(milliseconds(one));
+        one.ratios.push_back(one.times.back() / base);
     }
 
     /// One line that moves on a terminal; in a log, a line every quarter of the way.

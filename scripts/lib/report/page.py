@@ -40,8 +40,8 @@ GUIDE = """
 <li><b>Time</b> is that of whole frames: clearing, the passes over the geometry and the resolve
 into a picture of 8 bits a channel, from glFinish to glFinish. Setting up, compiling shaders and
 reading back are not in it. Methods take turns frame by frame, and a <b>ratio</b> is that of a
-frame to the opaque z-buffered one of the same round on stock Mesa: what slows the machine down
-slows both. Medians, with the 5th and 95th percentiles of the rounds in the tables and as bars in
+frame to the opaque one, z-buffered by stock Mesa, that was drawn right before it: what slows the
+machine down slows both. Medians, with the 5th and 95th percentiles of the rounds in the tables and as bars in
 the plots.</li>
 <li><b>Absolute milliseconds</b> are this machine's on that day. Ratios carry over better, though
 not to another number of processors or another processor for certain.</li>
