@@ -41,14 +41,15 @@ nlohmann::json to_json(const nlohmann::json &machine, std::span<const Row> rows)
     return {{"machine", machine}, {"results", results}};
 }
 
-/// How the ratios to z-buffering of this row and of framebuffer fetch with the same k compare, or "-"
-/// without such a row.
+/// How the ratios to z-buffering of this row and of framebuffer fetch with the same k compare, or
+/// "-" without such a row.
 static std::string ratio_to_fbfetch(std::span<const Row> rows, const Row &row)
 {
     const auto found = std::ranges::find_if(rows, [&](const Row &other) {
         return other.scene == row.scene && other.method == "fbfetch" && other.k == row.k;
     });
-    return found == rows.end() ? "-" : fmt::format("{:.2f}", row.ratio.median / found->ratio.median);
+    return found == rows.end() ? "-"
+                               : fmt::format("{:.2f}", row.ratio.median / found->ratio.median);
 }
 
 std::string to_table(std::span<const Row> rows)
