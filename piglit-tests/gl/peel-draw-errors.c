@@ -12,88 +12,8 @@
 
 #include "peel-common.h"
 
-#define W 8
+#define W PEEL_COMMAND_SIZE
 #define LAYERS 4
-
-static const float quad[4][2] = { { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } };
-static const GLubyte indices[4] = { 0, 1, 2, 3 };
-
-/** An error of Begin leaves the context outside of Begin and End. */
-static void
-begin_end(void)
-{
-	glBegin(GL_QUADS);
-	for (int i = 0; i < 4; i++)
-		glVertex2fv(quad[i]);
-	glEnd();
-}
-
-static void
-draw_arrays(void)
-{
-	glEnableClientState(GL_VERTEX_ARRAY);
-	glVertexPointer(2, GL_FLOAT, 0, quad);
-	glDrawArrays(GL_QUADS, 0, 4);
-	glDisableClientState(GL_VERTEX_ARRAY);
-}
-
-static void
-draw_elements(void)
-{
-	glEnableClientState(GL_VERTEX_ARRAY);
-	glVertexPointer(2, GL_FLOAT, 0, quad);
-	glDrawElements(GL_QUADS, 4, GL_UNSIGNED_BYTE, indices);
-	glDisableClientState(GL_VERTEX_ARRAY);
-}
-
-static void
-rect(void)
-{
-	glRectf(-1, -1, 1, 1);
-}
-
-static void
-call_list(void)
-{
-	static GLuint list;
-
-	if (!list) {
-		list = glGenLists(1);
-		glNewList(list, GL_COMPILE);
-		begin_end();
-		glEndList();
-	}
-	glCallList(list);
-}
-
-static void
-draw_pixels(void)
-{
-	static const float pixels[W * W * 4];
-
-	glWindowPos2i(0, 0);
-	glDrawPixels(W, W, GL_RGBA, GL_FLOAT, pixels);
-}
-
-static void
-bitmap(void)
-{
-	static const GLubyte bits[W] = { 255, 255, 255, 255, 255, 255, 255, 255 };
-
-	glWindowPos2i(0, 0);
-	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-	glBitmap(W, W, 0, 0, 0, 0, bits);
-}
-
-static const struct { const char *name; void (*draw)(void); } commands[] = {
-	{ "Rect", rect },
-	{ "DrawArrays", draw_arrays },
-	{ "DrawElements", draw_elements },
-	{ "Begin", begin_end },
-	{ "CallList", call_list },
-	{ "DrawPixels", draw_pixels },
-	{ "Bitmap", bitmap },
-};
 
 /** The scene of this file: more fragments than layers, two of each depth. */
 static void
@@ -135,21 +55,20 @@ check_refused(const struct peel *p, GLenum error)
 	/* Nearer than everything. */
 	glUseProgram(0);
 	glColor4f(1, 1, 1, 1);
-	for (int i = 0; i < ARRAY_SIZE(commands); i++) {
+	for (int i = 0; i < PEEL_NUM_COMMANDS; i++) {
 		/* Mesa's DrawPixels and Bitmap have their own for this. */
-		const bool pixels = commands[i].draw == draw_pixels ||
-			commands[i].draw == bitmap;
+		const bool pixels = peel_commands[i].is_pixels;
 		const GLenum wanted = pixels &&
 			error == GL_INVALID_FRAMEBUFFER_OPERATION ?
 			GL_INVALID_OPERATION : error;
 
-		commands[i].draw();
+		peel_commands[i].draw();
 		if (!piglit_check_gl_error(wanted)) {
-			printf("by %s\n", commands[i].name);
+			printf("by %s\n", peel_commands[i].name);
 			pass = false;
 		}
 		if (!peel_check_layers(p)) {
-			printf("%s has drawn\n", commands[i].name);
+			printf("%s has drawn\n", peel_commands[i].name);
 			return false;
 		}
 	}
@@ -440,7 +359,7 @@ state(void *data)
 	glDisable(GL_DEPTH_PEELING_MESA);
 	glDisable(GL_KBUFFER_PROGRAM_MESA);
 	glUseProgram(0);
-	rect();
+	glRectf(-1, -1, 1, 1);
 	pass = piglit_check_gl_error(
 		bad->error == GL_INVALID_FRAMEBUFFER_OPERATION ?
 		bad->error : GL_NO_ERROR) && pass;
@@ -532,7 +451,7 @@ resized(void *data)
 		if (size == W)
 			break;
 		glUseProgram(0);
-		rect();
+		glRectf(-1, -1, 1, 1);
 		pass = piglit_check_gl_error(GL_INVALID_OPERATION);
 	}
 	/* The old size: the bound still holds. */
