@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: MIT
  */
 
-#include "lp_bld_peel.h"
+#include "lp_bld_peel_context.h"
 
 #include "util/format/u_format.h"
 #include "gallivm/lp_bld_arit.h"
@@ -16,171 +16,6 @@
 
 #include "lp_bld_kbuf_format.h"
 #include "lp_jit.h"
-#include "lp_peel.h"
-#include "lp_peel_tile.h"
-#include "lp_state_fs.h"
-
-/** The depth, and of each color buffer up to 4. */
-#define MAX_WORDS (1 + 4 * PIPE_MAX_COLOR_BUFS)
-
-
-/** The layers of a group of pixels, in one sample. */
-struct peel_context
-{
-   struct gallivm_state *gallivm;
-   LLVMBuilderRef builder;
-   const struct lp_build_kbuf_params *params;
-   const struct lp_peel_key *key;
-   struct lp_type type;        /**< of words */
-   LLVMTypeRef vec_type;
-
-   LLVMValueRef tile;
-   LLVMValueRef block;         /**< number of the block in the tile */
-   LLVMValueRef layers;        /**< pointer to the nearest */
-   LLVMValueRef count_ptr;
-   LLVMValueRef last;          /**< number of the last layer that is there */
-   LLVMValueRef last_ptr;
-
-   unsigned num_words;
-   uint32_t bits[MAX_WORDS];   /**< those that move */
-   LLVMValueRef fragment[MAX_WORDS];
-};
-
-
-static LLVMValueRef
-byte_offset(struct peel_context *ctx, LLVMValueRef ptr, LLVMValueRef offset)
-{
-   LLVMTypeRef int8_type = LLVMInt8TypeInContext(ctx->gallivm->context);
-
-   return LLVMBuildGEP2(ctx->builder, int8_type, ptr, &offset, 1, "");
-}
-
-
-static LLVMValueRef
-const_offset(struct peel_context *ctx, LLVMValueRef ptr, int offset)
-{
-   return byte_offset(ctx, ptr, lp_build_const_int32(ctx->gallivm, offset));
-}
-
-
-static LLVMValueRef
-load_ptr(struct peel_context *ctx, LLVMValueRef base, size_t offset)
-{
-   LLVMTypeRef ptr_type =
-      LLVMPointerType(LLVMInt8TypeInContext(ctx->gallivm->context), 0);
-
-   return LLVMBuildLoad2(ctx->builder, ptr_type,
-                         const_offset(ctx, base, offset), "");
-}
-
-
-static LLVMValueRef
-load_int32(struct peel_context *ctx, LLVMValueRef base, size_t offset)
-{
-   return LLVMBuildLoad2(ctx->builder,
-                         LLVMInt32TypeInContext(ctx->gallivm->context),
-                         const_offset(ctx, base, offset), "");
-}
-
-
-static LLVMValueRef
-load_vec(struct peel_context *ctx, LLVMValueRef ptr, int offset)
-{
-   LLVMValueRef value = LLVMBuildLoad2(ctx->builder, ctx->vec_type,
-                                       const_offset(ctx, ptr, offset), "");
-
-   LLVMSetAlignment(value, ctx->type.length * 4);
-   return value;
-}
-
-
-static void
-store_vec(struct peel_context *ctx, LLVMValueRef value, LLVMValueRef ptr,
-          int offset)
-{
-   LLVMValueRef instr = LLVMBuildStore(ctx->builder, value,
-                                       const_offset(ctx, ptr, offset));
-
-   LLVMSetAlignment(instr, ctx->type.length * 4);
-}
-
-
-static LLVMValueRef
-broadcast(struct peel_context *ctx, LLVMValueRef scalar)
-{
-   return lp_build_broadcast(ctx->gallivm, ctx->vec_type, scalar);
-}
-
-
-/** Masks are vectors of 0 and -1, of which only the sign is looked at. */
-static LLVMValueRef
-less(struct peel_context *ctx, LLVMValueRef a, LLVMValueRef b)
-{
-   return LLVMBuildSExt(ctx->builder,
-                        LLVMBuildICmp(ctx->builder, LLVMIntSLT, a, b, ""),
-                        ctx->vec_type, "");
-}
-
-
-static LLVMValueRef
-equal(struct peel_context *ctx, LLVMValueRef a, LLVMValueRef b)
-{
-   return LLVMBuildSExt(ctx->builder,
-                        LLVMBuildICmp(ctx->builder, LLVMIntEQ, a, b, ""),
-                        ctx->vec_type, "");
-}
-
-
-static LLVMValueRef
-and(struct peel_context *ctx, LLVMValueRef a, LLVMValueRef b)
-{
-   return LLVMBuildAnd(ctx->builder, a, b, "");
-}
-
-
-static LLVMValueRef
-and_not(struct peel_context *ctx, LLVMValueRef a, LLVMValueRef b)
-{
-   return LLVMBuildAnd(ctx->builder, a, LLVMBuildNot(ctx->builder, b, ""), "");
-}
-
-
-static LLVMValueRef
-any(struct peel_context *ctx, LLVMValueRef mask)
-{
-   LLVMTypeRef bits_type = LLVMIntTypeInContext(ctx->gallivm->context,
-                                                ctx->type.length);
-   LLVMValueRef bits =
-      LLVMBuildICmp(ctx->builder, LLVMIntSLT, mask,
-                    LLVMConstNull(ctx->vec_type), "");
-
-   bits = LLVMBuildBitCast(ctx->builder, bits, bits_type, "");
-   return LLVMBuildICmp(ctx->builder, LLVMIntNE, bits,
-                        LLVMConstNull(bits_type), "");
-}
-
-
-static LLVMValueRef
-select_lanes(struct peel_context *ctx, LLVMValueRef mask,
-             LLVMValueRef a, LLVMValueRef b)
-{
-   mask = LLVMBuildICmp(ctx->builder, LLVMIntSLT, mask,
-                        LLVMConstNull(ctx->vec_type), "");
-   return LLVMBuildSelect(ctx->builder, mask, a, b, "");
-}
-
-
-/** Whether a fragment of the first depth goes in front of the second. */
-static LLVMValueRef
-passes(struct peel_context *ctx, LLVMValueRef depth, LLVMValueRef layer)
-{
-   if (!ctx->key->equal)
-      return less(ctx, depth, layer);
-
-   return LLVMBuildSExt(ctx->builder,
-                        LLVMBuildICmp(ctx->builder, LLVMIntSLE, depth, layer, ""),
-                        ctx->vec_type, "");
-}
 
 
 LLVMValueRef
@@ -230,9 +65,13 @@ lp_build_peel_depth(struct gallivm_state *gallivm,
 }
 
 
-/** Have the block loaded if no fragment has come to it before. */
+/**
+ * Have the block loaded if no fragment has come to it before.
+ *
+ * \param func  offset in lp_peel_tile
+ */
 static void
-load_block(struct peel_context *ctx)
+load_block(struct peel_context *ctx, enum lp_peel_valid needed, size_t func)
 {
    struct gallivm_state *gallivm = ctx->gallivm;
    LLVMTypeRef int8_type = LLVMInt8TypeInContext(gallivm->context);
@@ -248,14 +87,13 @@ load_block(struct peel_context *ctx)
    valid = LLVMBuildLoad2(ctx->builder, int8_type,
                           byte_offset(ctx, valid, ctx->block), "valid");
    lp_build_if(&invalid, gallivm,
-               LLVMBuildICmp(ctx->builder, LLVMIntEQ, valid,
-                             LLVMConstInt(int8_type, 0, 0), ""));
+               LLVMBuildICmp(ctx->builder, LLVMIntULT, valid,
+                             LLVMConstInt(int8_type, needed, 0), ""));
    {
       LLVMValueRef args[2] = { ctx->tile, ctx->block };
-      LLVMValueRef func = load_ptr(ctx, ctx->tile,
-                                   offsetof(struct lp_peel_tile, load_block));
 
-      LLVMBuildCall2(ctx->builder, func_type, func, args, 2, "");
+      LLVMBuildCall2(ctx->builder, func_type, load_ptr(ctx, ctx->tile, func),
+                     args, 2, "");
    }
    lp_build_endif(&invalid);
 }
@@ -292,7 +130,8 @@ init_words(struct peel_context *ctx)
 /** Find the group's pixels in the thread's tile. */
 static void
 peel_begin(struct peel_context *ctx, struct gallivm_state *gallivm,
-           const struct lp_build_kbuf_params *params)
+           const struct lp_build_kbuf_params *params,
+           enum lp_peel_valid needed)
 {
    LLVMBuilderRef builder = gallivm->builder;
 
@@ -318,7 +157,9 @@ peel_begin(struct peel_context *ctx, struct gallivm_state *gallivm,
    STATIC_ASSERT(TILE_SIZE == 64);
    ctx->block = LLVMBuildOr(builder, y, x, "block");
 
-   load_block(ctx);
+   load_block(ctx, needed,
+              needed == LP_PEEL_LAST ? offsetof(struct lp_peel_tile, load_last) :
+                                       offsetof(struct lp_peel_tile, load_block));
 
    /* Offsets need more than 32 bits with many layers. */
    LLVMTypeRef int64_type = LLVMInt64TypeInContext(gallivm->context);
@@ -427,7 +268,7 @@ lp_build_peel_cull(struct gallivm_state *gallivm,
    LLVMValueRef depth = params->pos[2];
    struct peel_context ctx;
 
-   peel_begin(&ctx, gallivm, params);
+   peel_begin(&ctx, gallivm, params, LP_PEEL_LAST);
 
    LLVMValueRef empty =
       broadcast(&ctx, load_int32(&ctx, ctx.tile,
@@ -522,133 +363,6 @@ encode_fragment(struct peel_context *ctx, LLVMValueRef depth)
 }
 
 
-/** Store new words of a layer in the lanes of active; the others keep theirs. */
-static void
-store_layer(struct peel_context *ctx, LLVMValueRef ptr, LLVMValueRef active,
-            const LLVMValueRef *words, const LLVMValueRef *old)
-{
-   for (unsigned w = 0; w < ctx->num_words; w++) {
-      LLVMValueRef value;
-
-      if (!ctx->bits[w])
-         continue;
-      if (!~ctx->bits[w]) {
-         value = select_lanes(ctx, active, words[w], old[w]);
-      } else {
-         /* See store_words() in lp_bld_kbuf_format.c. */
-         LLVMValueRef changed =
-            and(ctx, active, lp_build_const_int_vec(ctx->gallivm, ctx->type,
-                                                    ctx->bits[w]));
-         value = LLVMBuildXor(ctx->builder, old[w], words[w], "");
-         value = LLVMBuildXor(ctx->builder, and(ctx, value, changed), old[w], "");
-      }
-      store_vec(ctx, value, ptr, w * LP_PEEL_WORD_SIZE);
-   }
-}
-
-
-static void
-load_layer(struct peel_context *ctx, LLVMValueRef ptr, LLVMValueRef *words)
-{
-   for (unsigned w = 0; w < ctx->num_words; w++)
-      words[w] = load_vec(ctx, ptr, w * LP_PEEL_WORD_SIZE);
-}
-
-
-/**
- * From the last layer to the front, move layers back by one where the
- * fragment goes before them.
- *
- * Neighboring pixels mostly agree on the place, so that several layers at
- * once can be compared by the foremost of them, and moved in all active lanes.
- */
-static void
-insert(struct peel_context *ctx, LLVMValueRef first_active,
-       LLVMValueRef *last)
-{
-   enum { STEP = 4 };
-   struct gallivm_state *gallivm = ctx->gallivm;
-   LLVMBuilderRef builder = ctx->builder;
-   const int layer_size = ctx->num_words * LP_PEEL_WORD_SIZE;
-   LLVMTypeRef ptr_type = LLVMTypeOf(ctx->layers);
-   LLVMValueRef old[MAX_WORDS], front[MAX_WORDS], words[MAX_WORDS];
-
-   LLVMBasicBlockRef start = LLVMGetInsertBlock(builder);
-   LLVMBasicBlockRef loop = lp_build_insert_new_block(gallivm, "peel_loop");
-   LLVMBasicBlockRef try_step = lp_build_insert_new_block(gallivm, "peel_try");
-   LLVMBasicBlockRef step = lp_build_insert_new_block(gallivm, "peel_step");
-   LLVMBasicBlockRef one = lp_build_insert_new_block(gallivm, "peel_one");
-   LLVMBasicBlockRef move = lp_build_insert_new_block(gallivm, "peel_move");
-   LLVMBasicBlockRef first = lp_build_insert_new_block(gallivm, "peel_first");
-   LLVMBasicBlockRef end = lp_build_insert_new_block(gallivm, "peel_end");
-   LLVMValueRef step_end = const_offset(ctx, ctx->layers, STEP * layer_size);
-
-   LLVMBuildBr(builder, loop);
-
-   LLVMPositionBuilderAtEnd(builder, loop);
-   LLVMValueRef ptr = LLVMBuildPhi(builder, ptr_type, "");
-   LLVMValueRef active = LLVMBuildPhi(builder, ctx->vec_type, "");
-   LLVMAddIncoming(ptr, &ctx->last_ptr, &start, 1);
-   LLVMAddIncoming(active, &first_active, &start, 1);
-   for (unsigned w = 0; w < ctx->num_words; w++) {
-      old[w] = LLVMBuildPhi(builder, ctx->vec_type, "");
-      LLVMAddIncoming(old[w], &last[w], &start, 1);
-   }
-   LLVMBuildCondBr(builder,
-                   LLVMBuildICmp(builder, LLVMIntUGE, ptr, step_end, ""),
-                   try_step, one);
-
-   LLVMPositionBuilderAtEnd(builder, try_step);
-   LLVMValueRef foremost =
-      load_vec(ctx, const_offset(ctx, ptr, -STEP * layer_size), 0);
-   LLVMValueRef stops =
-      and_not(ctx, active, passes(ctx, ctx->fragment[0], foremost));
-   LLVMBuildCondBr(builder, any(ctx, stops), one, step);
-
-   LLVMPositionBuilderAtEnd(builder, step);
-   memcpy(words, old, sizeof words);
-   LLVMValueRef step_ptr = ptr;
-   for (unsigned i = 0; i < STEP; i++) {
-      LLVMValueRef front_ptr = const_offset(ctx, step_ptr, -layer_size);
-
-      load_layer(ctx, front_ptr, front);
-      store_layer(ctx, step_ptr, active, front, words);
-      memcpy(words, front, sizeof words);
-      step_ptr = front_ptr;
-   }
-   LLVMAddIncoming(ptr, &step_ptr, &step, 1);
-   LLVMAddIncoming(active, &active, &step, 1);
-   for (unsigned w = 0; w < ctx->num_words; w++)
-      LLVMAddIncoming(old[w], &words[w], &step, 1);
-   LLVMBuildBr(builder, loop);
-
-   LLVMPositionBuilderAtEnd(builder, one);
-   LLVMBuildCondBr(builder,
-                   LLVMBuildICmp(builder, LLVMIntEQ, ptr, ctx->layers, ""),
-                   first, move);
-
-   LLVMPositionBuilderAtEnd(builder, move);
-   LLVMValueRef front_ptr = const_offset(ctx, ptr, -layer_size);
-   load_layer(ctx, front_ptr, front);
-   LLVMValueRef moved =
-      and(ctx, active, passes(ctx, ctx->fragment[0], front[0]));
-   for (unsigned w = 0; w < ctx->num_words; w++)
-      words[w] = select_lanes(ctx, moved, front[w], ctx->fragment[w]);
-   store_layer(ctx, ptr, active, words, old);
-   LLVMAddIncoming(ptr, &front_ptr, &move, 1);
-   LLVMAddIncoming(active, &moved, &move, 1);
-   for (unsigned w = 0; w < ctx->num_words; w++)
-      LLVMAddIncoming(old[w], &front[w], &move, 1);
-   LLVMBuildCondBr(builder, any(ctx, moved), loop, end);
-
-   LLVMPositionBuilderAtEnd(builder, first);
-   store_layer(ctx, ptr, active, ctx->fragment, old);
-   LLVMBuildBr(builder, end);
-
-   LLVMPositionBuilderAtEnd(builder, end);
-}
-
-
 LLVMValueRef
 lp_build_peel_stage(struct gallivm_state *gallivm,
                     const struct lp_build_kbuf_params *params)
@@ -672,7 +386,7 @@ lp_build_peel_stage(struct gallivm_state *gallivm,
 
    lp_build_if(&alive, gallivm, any(&ctx, params->mask));
 
-   peel_begin(&ctx, gallivm, params);
+   peel_begin(&ctx, gallivm, params, LP_PEEL_ALL);
    last[0] = load_vec(&ctx, ctx.last_ptr, 0);
 
    LLVMValueRef mask = take_part(&ctx, depth);
@@ -711,10 +425,11 @@ lp_build_peel_stage(struct gallivm_state *gallivm,
 
       LLVMValueRef changed =
          const_offset(&ctx, ctx.tile, offsetof(struct lp_peel_tile, changed));
-      LLVMBuildStore(builder, LLVMConstInt(int8_type, 1, 0),
+      LLVMBuildStore(builder,
+                     LLVMConstInt(int8_type, LP_PEEL_CHANGED | LP_PEEL_UNKNOWN, 0),
                      byte_offset(&ctx, changed, ctx.block));
 
-      insert(&ctx, active, last);
+      lp_build_peel_insert(&ctx, active, last);
    }
    lp_build_endif(&inserted);
    lp_build_endif(&alive);

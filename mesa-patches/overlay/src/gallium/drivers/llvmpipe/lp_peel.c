@@ -22,6 +22,10 @@
 #include "lp_texture.h"
 
 
+/** From this size on layers go to memory past the caches. */
+#define STREAM_SIZE (64 << 20)
+
+
 /* Off: every fragment is shaded.  Makes no difference to images. */
 DEBUG_GET_ONCE_BOOL_OPTION(kbuf_cull, "LP_KBUF_CULL", true)
 
@@ -362,6 +366,10 @@ lp_peel_update_scene(struct lp_setup_context *setup)
       if (fb->cbufs[i])
          stored->num_words += lp_peel_color_words(fb->cbufs[i]->format);
    }
+
+   stored->stream =
+      (uint64_t)fb->width * fb->height * stored->num_samples *
+      stored->num_layers * stored->num_words * 4 > STREAM_SIZE;
 
    setup->fs.current.peel = stored;
    setup->scene->peels = true;

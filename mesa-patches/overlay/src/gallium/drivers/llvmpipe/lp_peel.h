@@ -75,6 +75,7 @@ struct lp_rast_peel
    unsigned num_layers;
    unsigned num_samples;
    unsigned num_words;  /**< of a pixel in a layer: depth and colors */
+   bool stream;         /**< all of it is more than the caches hold */
 };
 
 /**

@@ -12,15 +12,23 @@
 #ifndef LP_PEEL_PIXELS_H
 #define LP_PEEL_PIXELS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 void
 lp_peel_load_pixels(uint32_t *words, const uint8_t *block, unsigned stride,
                     unsigned bytes);
 
-/** \param quads  the first word of each quad; the next ones lie 16 apart */
+/**
+ * \param quads   the first word of each quad; the next ones lie 16 apart
+ * \param stream  past the caches, for whole cache lines that are not going to
+ *                be read soon; lp_peel_stream_end() has to follow
+ */
 void
 lp_peel_store_pixels(const uint32_t *const quads[4], uint8_t *block,
-                     unsigned stride, unsigned bytes);
+                     unsigned stride, unsigned bytes, bool stream);
+
+void
+lp_peel_stream_end(void);
 
 #endif /* LP_PEEL_PIXELS_H */

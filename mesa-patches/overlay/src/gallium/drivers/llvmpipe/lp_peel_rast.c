@@ -14,15 +14,12 @@
 #include "lp_state_fs.h"
 
 
-/** What the pixels of a primitive are in, in pixels of the tile. */
-struct extent
-{
-   unsigned x0, y0, x1, y1;  /**< including these */
-};
-
-
+/**
+ * The inputs of a command that is large enough for its depths to be worth a
+ * look; small triangles are refused as cheaply by the generated code.
+ */
 static const struct lp_rast_shader_inputs *
-command_inputs(unsigned cmd, const union lp_rast_cmd_arg arg)
+large_inputs(unsigned cmd, const union lp_rast_cmd_arg arg)
 {
    switch (cmd) {
    case LP_RAST_OP_SHADE_TILE:
@@ -30,6 +27,15 @@ command_inputs(unsigned cmd, const union lp_rast_cmd_arg arg)
       return arg.shade_tile;
    case LP_RAST_OP_RECTANGLE:
       return &arg.rectangle->inputs;
+   case LP_RAST_OP_TRIANGLE_3_4:
+   case LP_RAST_OP_TRIANGLE_3_16:
+   case LP_RAST_OP_TRIANGLE_4_16:
+   case LP_RAST_OP_TRIANGLE_32_3_4:
+   case LP_RAST_OP_TRIANGLE_32_3_16:
+   case LP_RAST_OP_TRIANGLE_32_4_16:
+   case LP_RAST_OP_MS_TRIANGLE_3_4:
+   case LP_RAST_OP_MS_TRIANGLE_3_16:
+   case LP_RAST_OP_MS_TRIANGLE_4_16:
    case LP_RAST_OP_BLIT:
       return NULL;
    default:
@@ -38,48 +44,11 @@ command_inputs(unsigned cmd, const union lp_rast_cmd_arg arg)
 }
 
 
-static struct extent
-command_extent(const struct lp_rasterizer_task *task, unsigned cmd,
-               const union lp_rast_cmd_arg arg)
-{
-   struct extent extent = { 0, 0, task->width - 1, task->height - 1 };
-   unsigned size = 0;
-
-   switch (cmd) {
-   case LP_RAST_OP_TRIANGLE_3_4:
-   case LP_RAST_OP_TRIANGLE_32_3_4:
-   case LP_RAST_OP_MS_TRIANGLE_3_4:
-      size = 4;
-      break;
-   case LP_RAST_OP_TRIANGLE_3_16:
-   case LP_RAST_OP_TRIANGLE_4_16:
-   case LP_RAST_OP_TRIANGLE_32_3_16:
-   case LP_RAST_OP_TRIANGLE_32_4_16:
-   case LP_RAST_OP_MS_TRIANGLE_3_16:
-   case LP_RAST_OP_MS_TRIANGLE_4_16:
-      size = 16;
-      break;
-   default:
-      break;
-   }
-
-   if (size) {
-      /* See lp_rast_arg_triangle_contained(). */
-      extent.x0 = arg.triangle.plane_mask & 0xff;
-      extent.y0 = arg.triangle.plane_mask >> 8;
-      extent.x1 = MIN2(extent.x0 + size - 1, extent.x1);
-      extent.y1 = MIN2(extent.y0 + size - 1, extent.y1);
-   }
-   return extent;
-}
-
-
-/** The nearest that a plane can come in pixels, in comparable form. */
+/** The nearest that a plane comes in the tile, in comparable form. */
 static int32_t
 nearest_depth(const struct lp_rasterizer_task *task,
               const struct lp_peel_depth_format *format, bool restricted,
-              const struct lp_rast_shader_inputs *inputs,
-              const struct extent *extent)
+              const struct lp_rast_shader_inputs *inputs)
 {
    const float offset = GET_A0(inputs)[0][0];
    const float a0 = GET_A0(inputs)[0][2];
@@ -87,8 +56,8 @@ nearest_depth(const struct lp_rasterizer_task *task,
    const float dady = GET_DADY(inputs)[0][2];
 
    /* Samples lie up to a pixel from where pixels do. */
-   const float x0 = task->x + extent->x0, x1 = task->x + extent->x1 + 1;
-   const float y0 = task->y + extent->y0, y1 = task->y + extent->y1 + 1;
+   const float x0 = task->x, x1 = task->x + task->width;
+   const float y0 = task->y, y1 = task->y + task->height;
 
    /* More than the generated code can lose by rounding. */
    const float error = (fabsf(a0) + fabsf(offset) +
@@ -132,19 +101,17 @@ is_refused(struct lp_peel_tile *tile, unsigned cmd,
        !(tile->overflow || p_atomic_read(&peel->object->overflow)))
       return false;
 
-   const struct lp_rast_shader_inputs *inputs = command_inputs(cmd, arg);
+   const struct lp_rast_shader_inputs *inputs = large_inputs(cmd, arg);
    if (!inputs)
       return false;
 
-   const struct extent extent = command_extent(task, cmd, arg);
    const int32_t farthest =
-      lp_peel_tile_farthest(tile, extent.x0, extent.y0, extent.x1, extent.y1);
+      lp_peel_tile_farthest(tile, cmd == LP_RAST_OP_SHADE_TILE);
    if (farthest == INT32_MAX)
       return false;
 
    const int32_t nearest = nearest_depth(task, &peel->depth,
-                                         key->restrict_depth_values,
-                                         inputs, &extent);
+                                         key->restrict_depth_values, inputs);
 
    /* Those at the bound are counted. */
    return nearest > farthest ||

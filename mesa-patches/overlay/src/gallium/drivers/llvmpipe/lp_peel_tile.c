@@ -190,9 +190,39 @@ load_block(struct lp_peel_tile *tile, uint32_t block)
       for (unsigned q = 0; q < 4; q++)
          *group_count(tile, block, s, q) = count;
    }
-   tile->valid[block] = true;
-   tile->changed[block] = true;
+   if (!tile->valid[block])
+      tile->num_valid++;
+   tile->valid[block] = LP_PEEL_ALL;
+   tile->changed[block] = LP_PEEL_UNKNOWN;
+}
+
+
+/**
+ * A scene that is too large is run in parts, in each of which only some of
+ * the blocks change: for the others this is all that is needed.
+ */
+static void
+load_last(struct lp_peel_tile *tile, uint32_t block)
+{
+   const struct lp_rast_peel *peel = tile->peel;
+   const struct lp_rasterizer_task *task = tile->task;
+   const unsigned last = peel->num_layers - 1;
+
+   if (tile->cleared_depth || tile->cleared_colors) {
+      load_block(tile, block);
+      return;
+   }
+
+   for (unsigned s = 0; s < peel->num_samples; s++) {
+      load_depth(tile_words(tile, block, last, s),
+                 depth_block(task, block, last, s),
+                 task->scene->zsbuf.stride, &peel->depth);
+      for (unsigned q = 0; q < 4; q++)
+         *group_count(tile, block, s, q) = last;
+   }
    tile->num_valid++;
+   tile->valid[block] = LP_PEEL_LAST;
+   tile->changed[block] = LP_PEEL_UNKNOWN;
 }
 
 
@@ -202,7 +232,7 @@ load_block(struct lp_peel_tile *tile, uint32_t block)
 
 static void
 store_depth(const struct lp_peel_tile *tile, const uint32_t *const quads[4],
-            uint8_t *block)
+            uint8_t *block, bool stream)
 {
    const struct lp_peel_depth_format *format = &tile->peel->depth;
    const unsigned stride = tile->task->scene->zsbuf.stride;
@@ -239,11 +269,11 @@ store_depth(const struct lp_peel_tile *tile, const uint32_t *const quads[4],
          }
       }
    }
-   lp_peel_store_pixels(pixel_quads, block, stride, format->bytes);
+   lp_peel_store_pixels(pixel_quads, block, stride, format->bytes, stream);
 }
 
 
-/** One layer and sample of a row of blocks, of those that are in use. */
+/** One layer and sample of a row of blocks, of those that have changed. */
 static void
 store_layer(const struct lp_peel_tile *tile, unsigned row, unsigned layer,
             unsigned sample)
@@ -252,23 +282,33 @@ store_layer(const struct lp_peel_tile *tile, unsigned row, unsigned layer,
    const struct lp_scene *scene = task->scene;
    const uint32_t *quads[TILE_SIZE / 4][4];
    unsigned blocks[TILE_SIZE / 4], num_blocks = 0;
+   const bool cleared = tile->cleared_depth || tile->cleared_colors;
 
    for (unsigned x = 0; x < TILE_SIZE / 4; x++) {
       const unsigned block = row * (TILE_SIZE / 4) + x;
 
-      if (!tile->valid[block])
+      if (!(tile->changed[block] & LP_PEEL_CHANGED))
          continue;
+
+      bool present = cleared;
       for (unsigned q = 0; q < 4; q++) {
          const unsigned count = *group_count(tile, block, sample, q);
 
          quads[num_blocks][q] =
             tile_words(tile, block, MIN2(layer, count), sample) + 4 * q;
+         present |= layer <= count;
       }
-      blocks[num_blocks++] = block;
+
+      /* Else it is in memory as it was. */
+      if (present)
+         blocks[num_blocks++] = block;
    }
 
+   /* Whole cache lines, of more than the caches hold. */
+   const bool stream = num_blocks == TILE_SIZE / 4 && tile->peel->stream;
    for (unsigned b = 0; b < num_blocks; b++) {
-      store_depth(tile, quads[b], depth_block(task, blocks[b], layer, sample));
+      store_depth(tile, quads[b], depth_block(task, blocks[b], layer, sample),
+                  stream);
       for (unsigned q = 0; q < 4; q++)
          quads[b][q] += 16;
    }
@@ -281,7 +321,7 @@ store_layer(const struct lp_peel_tile *tile, unsigned row, unsigned layer,
       for (unsigned b = 0; b < num_blocks; b++) {
          lp_peel_store_pixels(quads[b],
                               color_block(task, i, blocks[b], layer, sample),
-                              scene->cbufs[i].stride, bytes);
+                              scene->cbufs[i].stride, bytes, stream);
          for (unsigned q = 0; q < 4; q++)
             quads[b][q] += DIV_ROUND_UP(bytes, 4) * 16;
       }
@@ -303,6 +343,7 @@ store_blocks(struct lp_peel_tile *tile)
 
             if (!tile->valid[block])
                load_block(tile, block);
+            tile->changed[block] |= LP_PEEL_CHANGED;
          }
       }
    }
@@ -313,6 +354,7 @@ store_blocks(struct lp_peel_tile *tile)
             store_layer(tile, row, layer, s);
       }
    }
+   lp_peel_stream_end();
 }
 
 
@@ -324,6 +366,8 @@ lp_peel_tile_flush(struct lp_peel_tile *tile)
    if (tile->num_valid) {
       store_blocks(tile);
       memset(tile->valid, 0, sizeof tile->valid);
+      memset(tile->changed, 0, sizeof tile->changed);
+      tile->farthest = INT32_MAX;
       tile->num_valid = 0;
    } else {
       u_foreach_bit(i, tile->cleared_colors)
@@ -417,9 +461,11 @@ lp_peel_tile_begin(struct lp_rasterizer_task *task,
          return NULL;
       tile->task = task;
       tile->load_block = load_block;
+      tile->load_last = load_last;
       task->thread_data.peel_tile = tile;
    }
    tile->dispatch = dispatch;
+   tile->farthest = INT32_MAX;
    return tile;
 }
 
@@ -464,8 +510,8 @@ block_farthest(struct lp_peel_tile *tile, unsigned block)
 {
    if (!tile->valid[block])
       return INT32_MAX;
-   if (!tile->changed[block])
-      return tile->farthest[block];
+   if (!(tile->changed[block] & LP_PEEL_UNKNOWN))
+      return tile->block_farthest[block];
 
    int32_t farthest = INT32_MIN;
    for (unsigned s = 0; s < tile->peel->num_samples; s++) {
@@ -480,28 +526,32 @@ block_farthest(struct lp_peel_tile *tile, unsigned block)
    }
    if (farthest >= tile->empty)
       farthest = INT32_MAX;
-   tile->farthest[block] = farthest;
-   tile->changed[block] = false;
+   tile->block_farthest[block] = farthest;
+   tile->changed[block] &= ~LP_PEEL_UNKNOWN;
    return farthest;
 }
 
 
 int32_t
-lp_peel_tile_farthest(struct lp_peel_tile *tile, unsigned x0, unsigned y0,
-                      unsigned x1, unsigned y1)
+lp_peel_tile_farthest(struct lp_peel_tile *tile, bool exact)
 {
+   const struct lp_rasterizer_task *task = tile->task;
    int32_t farthest = INT32_MIN;
 
-   for (unsigned y = y0 / 4; y <= y1 / 4; y++) {
-      for (unsigned x = x0 / 4; x <= x1 / 4; x++) {
+   /* It only gets nearer, so that an old one is right, too. */
+   if (!exact && tile->farthest_age++ % 16)
+      return tile->farthest;
+
+   for (unsigned y = 0; y < DIV_ROUND_UP(task->height, 4); y++) {
+      for (unsigned x = 0; x < DIV_ROUND_UP(task->width, 4); x++) {
          const int32_t f = block_farthest(tile, y * (TILE_SIZE / 4) + x);
 
-         if (f == INT32_MAX)
-            return f;
          farthest = MAX2(farthest, f);
+         if (farthest == INT32_MAX)
+            return farthest;
       }
    }
-   return farthest;
+   return tile->farthest = farthest;
 }
 
 

@@ -45,12 +45,27 @@ struct lp_rasterizer_task;
 /** Groups of a block, in which the generated code works: one of each quad. */
 #define LP_PEEL_GROUPS 4
 
+/** What the tile has of a block. */
+enum lp_peel_valid
+{
+   LP_PEEL_NOTHING = 0,
+   LP_PEEL_LAST,  /**< the depths of the last layer, to refuse fragments */
+   LP_PEEL_ALL,
+};
+
+enum lp_peel_changed
+{
+   LP_PEEL_CHANGED = 1,  /**< different from the buffers */
+   LP_PEEL_UNKNOWN = 2,  /**< block_farthest does not hold */
+};
+
 struct lp_peel_tile
 {
    /* Used by generated code. */
    uint8_t *data;
    uint32_t *counts;      /**< of block, sample, group */
    void (*load_block)(struct lp_peel_tile *tile, uint32_t block);
+   void (*load_last)(struct lp_peel_tile *tile, uint32_t block);
    uint32_t block_size;   /**< in bytes */
    uint32_t sample_size;
    uint32_t last_layer;
@@ -58,14 +73,16 @@ struct lp_peel_tile
    struct lp_peel_bound *bounds;  /**< of the first block */
    uint32_t bound_blocks_x;
    uint32_t overflow;
-   uint8_t valid[LP_PEEL_TILE_BLOCKS];
-   uint8_t changed[LP_PEEL_TILE_BLOCKS];
+   uint8_t valid[LP_PEEL_TILE_BLOCKS];    /**< of enum lp_peel_valid */
+   uint8_t changed[LP_PEEL_TILE_BLOCKS];  /**< of enum lp_peel_changed */
 
    struct lp_rasterizer_task *task;
    const lp_rast_cmd_func *dispatch;
    const struct lp_rast_peel *peel;  /**< NULL: no block is valid */
-   unsigned num_valid;
-   int32_t farthest[LP_PEEL_TILE_BLOCKS]; /**< see lp_peel_tile_farthest() */
+   unsigned num_valid;  /**< blocks of which there is something */
+   int32_t block_farthest[LP_PEEL_TILE_BLOCKS];
+   int32_t farthest;        /**< see lp_peel_tile_farthest() */
+   unsigned farthest_age;
 
    /* What is to be cleared before anything else. */
    uint32_t cleared_colors;      /**< a bit for each color buffer */
@@ -107,12 +124,13 @@ void
 lp_peel_tile_flush(struct lp_peel_tile *tile);
 
 /**
- * Fragments at this depth or farther can not be inserted into any of the
- * blocks; INT32_MAX if there is no such depth.
+ * Fragments at this depth or farther can not be inserted anywhere in the tile;
+ * INT32_MAX if there is no such depth.
+ *
+ * \param exact  find the nearest such depth, which takes some time
  */
 int32_t
-lp_peel_tile_farthest(struct lp_peel_tile *tile, unsigned x0, unsigned y0,
-                      unsigned x1, unsigned y1);
+lp_peel_tile_farthest(struct lp_peel_tile *tile, bool exact);
 
 void
 lp_peel_tiles_destroy(struct lp_rasterizer *rast);

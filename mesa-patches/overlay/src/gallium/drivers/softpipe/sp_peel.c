@@ -101,9 +101,8 @@ advance_bound(struct sp_peel_bound *bound, bool first,
    for (unsigned i = 0; i < layers->num; i++)
       kept += layer_depth(layers, i) == last;
 
-   /* Depths that are the old bound's are those that were let in behind it: if
-    * the layers were not cleared since then, what they hold is counted
-    * already.
+   /* Layers at the depth of the old bound are fragments that were let in
+    * behind it, or, if nobody cleared the layers since, counted already.
     */
    const bool further =
       first || sp_depth_is_nearer(func, bound->depth, last);
