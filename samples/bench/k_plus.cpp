@@ -218,7 +218,9 @@ void main()
 
 std::string resolve_source(Size size, int k)
 {
-    return declarations(size, k) + fmt::format(R"(
+    return declarations(size, k) +
+           fmt::format(
+               R"(
 out vec4 color;
 
 void main()
@@ -228,10 +230,10 @@ void main()
 {}
 }}
 )",
-                                               load_sorted_glsl(k, "z{0} = depth({0}); color{0} = "
-                                                                   "colors[first_slot + {0} * "
-                                                                   "stride];"),
-                                               composite_sorted_glsl(k));
+               declare_slots_glsl(0, k) + load_sorted_glsl(0, k, "count",
+                                                           "z{0} = depth({0}); item{0} = "
+                                                           "{0}u;"),
+               composite_sorted_glsl(k, "count", "colors[first_slot + int(item{0}) * stride]"));
 }
 
 class KPlus final : public Renderer

@@ -44,7 +44,9 @@ struct Method {
 inline constexpr std::array methods{
     Method{"zbuffer", "stock", 0},
     Method{"classic-peeling", "stock", max_k},
+    Method{"dual-peeling", "stock", max_k},
     Method{"fbfetch", "stock", 16},
+    Method{"linked-list", "stock", max_k},
     Method{"k-plus", "stock", max_k, k_plus_variants},
     Method{"kbuffer-program", "ours", max_k},
     Method{"depth-peeling", "ours", max_k, culling_by_driver},

@@ -14,8 +14,12 @@ std::unique_ptr<Renderer> make_renderer(const Gl &gl, const std::string &method,
         return make_zbuffer(gl, size);
     if (method == "classic-peeling")
         return make_classic_peeling(gl, size, k);
+    if (method == "dual-peeling")
+        return make_dual_peeling(gl, size, k);
     if (method == "fbfetch")
         return make_fbfetch(gl, size, k);
+    if (method == "linked-list")
+        return make_linked_list(gl, size, k);
     if (method == "k-plus")
         return make_k_plus(gl, variant, size, k);
     if (method == "kbuffer-program")

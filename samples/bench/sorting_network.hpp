@@ -3,6 +3,9 @@
 // GLSL that sorts the fragments of a pixel in registers. llvmpipe runs a sorting network several
 // times as fast as an insertion or shell sort, whose indexed local array it scatters into memory
 // pixel by pixel.
+//
+// Slot i is a pair of variables, `float z<i>` and `uint item<i>`; nearest first, and where depths
+// are equal the smaller item first. Slots without a fragment are behind all others.
 #pragma once
 
 #include <string>
@@ -11,13 +14,20 @@
 namespace kb::bench
 {
 
-/// Statements that declare `float z0...` and `uint color0...` and sort them by z, nearest first, by
-/// Batcher's odd-even mergesort. An `int count` says how many fragments there are; what only more
-/// would need is skipped. `load` is a format string of statements that set `z{0}` and `color{0}`,
-/// for a slot that is below the count.
-std::string load_sorted_glsl(int slots, std::string_view load);
+/// Statements that declare empty slots: `count` of them from `first`.
+std::string declare_slots_glsl(int first, int count);
 
-/// Statements that composite what load_sorted_glsl sorted into `vec4 color`, over the background.
-std::string composite_sorted_glsl(int slots);
+/// Statements that fill slots and sort them by Batcher's odd-even mergesort. `load` is a format
+/// string of statements for slot {0}, of which {1} is the number within these slots. The expression
+/// `filled` says how many slots they fill; what only more would need is skipped.
+std::string load_sorted_glsl(int first, int count, std::string_view filled, std::string_view load);
+
+/// Statements that put the `count` nearest of two sorted runs of slots, which follow each other
+/// from slot 0, into the first run, sorted. `count` is a power of two.
+std::string merge_nearest_glsl(int count);
+
+/// Statements that composite the first slots into `vec4 color`, over the background. The expression
+/// `item_color` gives the color of slot {0} as four bytes; `filled` is as above.
+std::string composite_sorted_glsl(int count, std::string_view filled, std::string_view item_color);
 
 } // namespace kb::bench

@@ -13,7 +13,7 @@ static int blocks_across(int pixels)
 }
 
 StorageBuffer::StorageBuffer(const Gl &gl, std::size_t words, GLenum format)
-    : gl_(gl), format_(format), buffer_(gl), view_(gl)
+    : gl_(&gl), format_(format), buffer_(gl), view_(gl)
 {
     gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer_.id());
     gl.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(words * sizeof(GLuint)),
@@ -24,20 +24,29 @@ StorageBuffer::StorageBuffer(const Gl &gl, std::size_t words, GLenum format)
 
 void StorageBuffer::bind_storage(GLuint binding) const
 {
-    gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer_.id());
+    gl_->BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer_.id());
 }
 
 void StorageBuffer::bind_image(GLuint unit) const
 {
-    gl_.BindImageTexture(unit, view_.id(), 0, GL_FALSE, 0, GL_READ_ONLY, format_);
+    gl_->BindImageTexture(unit, view_.id(), 0, GL_FALSE, 0, GL_READ_ONLY, format_);
 }
 
 void StorageBuffer::clear(std::size_t words, GLuint value) const
 {
-    gl_.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer_.id());
-    gl_.ClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0,
-                           static_cast<GLsizeiptr>(words * sizeof(GLuint)), GL_RED_INTEGER,
-                           GL_UNSIGNED_INT, &value);
+    gl_->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer_.id());
+    gl_->ClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0,
+                            static_cast<GLsizeiptr>(words * sizeof(GLuint)), GL_RED_INTEGER,
+                            GL_UNSIGNED_INT, &value);
+}
+
+GLuint StorageBuffer::read() const
+{
+    GLuint word = 0;
+    gl_->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl_->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer_.id());
+    gl_->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, &word);
+    return word;
 }
 
 std::size_t block_count(Size size)

@@ -25,9 +25,11 @@ public:
 
     /// Sets the first words.
     void clear(std::size_t words, GLuint value) const;
+    /// The first word. Waits for what is being drawn.
+    GLuint read() const;
 
 private:
-    const Gl &gl_;
+    const Gl *gl_;
     GLenum format_;
     Buffer buffer_;
     Texture view_;
