@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <string>
 
 namespace kb::bench
 {
@@ -51,6 +52,31 @@ void main()
 )";
 }
 
+// Layers in the middle may be empty, so all are looked at. llvmpipe is fastest without a loop.
+std::string resolve_source(int layers)
+{
+    std::string source = R"(
+layout(binding = 0, rgba8) readonly uniform image2DArray layers;
+out vec4 color;
+vec3 sum = vec3(0.0);
+float transmittance = 1.0;
+
+void add(vec4 fragment)
+{
+    sum += transmittance * fragment.a * fragment.rgb;
+    transmittance *= 1.0 - fragment.a;
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+)";
+    for (int layer = 0; layer < layers; ++layer)
+        source += fmt::format("    add(imageLoad(layers, ivec3(pixel, {})));\n", layer);
+    return source +
+           fmt::format("    color = vec4(sum + transmittance * {}, 1.0);\n}}\n", background_glsl());
+}
+
 class DualPeeling final : public Renderer
 {
 public:
@@ -68,23 +94,7 @@ void main()
 }
 )")),
           peel_(make_geometry_program(gl, "", peel_source())),
-          resolve_(make_view_program(gl, fmt::format(R"(
-uniform sampler2DArray layers;
-out vec4 color;
-
-void main()
-{{
-    vec3 sum = vec3(0.0);
-    float transmittance = 1.0;
-    for (int layer = 0; layer < {}; ++layer) {{
-        vec4 fragment = texelFetch(layers, ivec3(gl_FragCoord.xy, layer), 0);
-        sum += transmittance * fragment.a * fragment.rgb;
-        transmittance *= 1.0 - fragment.a;
-    }}
-    color = vec4(sum + transmittance * {}, 1.0);
-}}
-)",
-                                                     k, background_glsl())))
+          resolve_(make_view_program(gl, resolve_source(k)))
     {
     }
 
@@ -109,7 +119,7 @@ void main()
         gl_.Disable(GL_BLEND);
 
         gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
-        gl_.BindTexture(GL_TEXTURE_2D_ARRAY, layers_.id());
+        gl_.BindImageTexture(0, layers_.id(), 0, GL_TRUE, 0, GL_READ_ONLY, GL_RGBA8);
         resolve_.use();
         draw_full_screen(gl_, empty_);
     }

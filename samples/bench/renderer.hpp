@@ -24,7 +24,7 @@ public:
 
     /// Number of passes over the geometry.
     virtual int passes() const { return 1; }
-    /// Of what the method stores beside the final image.
+    /// Of what the method stores beside the final image, once it has drawn a scene.
     virtual int bytes_per_pixel() const = 0;
 
 protected:

@@ -133,12 +133,11 @@ private:
             row.driver = run.driver;
             row.k = run.k;
             row.passes = made.at("passes").get<int>();
-            row.bytes_per_pixel = made.at("bytes_per_pixel").get<int>();
             row.triangles = triangles;
             row.fragments = capture.at("fragments").get<std::uint64_t>();
             active.push_back({run, &worker, made.at("id").get<int>(), std::move(row), {}, {}});
             // Compiles its shaders too, before frames are measured.
-            find_errors(active.back());
+            look_at_picture(active.back());
         }
         for (int round = 1; round <= options_.rounds; ++round) {
             show_round(scene, round);
@@ -189,10 +188,13 @@ private:
         return workers_.at({"stock", ""})->ask({{"do", "capture"}, {"ks", ks}, {"paths", paths}});
     }
 
-    void find_errors(Active &one) const
+    void look_at_picture(Active &one) const
     {
         const std::filesystem::path path = folder_.path() / "image.pfm";
-        one.worker->ask({{"do", "image"}, {"id", one.id}, {"path", path.string()}});
+        const json drawn =
+            one.worker->ask({{"do", "image"}, {"id", one.id}, {"path", path.string()}});
+        // Known only now: it may depend on the scene.
+        one.row.bytes_per_pixel = drawn.at("bytes_per_pixel").get<int>();
         const ImageRgbaF image = must(read_pfm(path));
         if (!options_.pictures.empty()) {
             must(write_png(options_.pictures /

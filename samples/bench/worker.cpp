@@ -107,9 +107,7 @@ private:
         renderers_.push_back(make_renderer(gl_, method, request.at("variant").get<std::string>(),
                                            size_, request.at("k").get<int>()));
         must(check_gl(gl_, "setting up " + method));
-        return {{"id", renderers_.size() - 1},
-                {"passes", renderers_.back()->passes()},
-                {"bytes_per_pixel", renderers_.back()->bytes_per_pixel()}};
+        return {{"id", renderers_.size() - 1}, {"passes", renderers_.back()->passes()}};
     }
 
     Renderer &renderer(const json &request)
@@ -131,7 +129,9 @@ private:
         const ImageRgbaF image = read_color(gl_, seen_->framebuffer(), size_);
         must(check_gl(gl_, "reading the image"));
         must(write_pfm(request.at("path").get<std::string>(), image));
-        return json::object();
+        // Drivers compile shaders for the formats that they write.
+        renderer(request).draw(scene_.value(), timed_->framebuffer());
+        return {{"bytes_per_pixel", renderer(request).bytes_per_pixel()}};
     }
 
     std::unique_ptr<Context> context_;
