@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// GLSL that sorts the fragments of a pixel in registers. In llvmpipe a sorting network is faster than
-// an insertion sort, whose indexed local array goes to memory pixel by pixel.
+// GLSL that sorts the fragments of a pixel in registers. In llvmpipe a sorting network is faster
+// than an insertion sort, whose indexed local array goes to memory pixel by pixel.
 //
 // Slot i is a pair of variables, `float z<i>` and `uint item<i>`; nearest first, and where depths
 // are equal the smaller item first. Slots without a fragment are behind all others.
