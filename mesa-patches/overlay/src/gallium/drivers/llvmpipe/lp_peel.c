@@ -55,6 +55,14 @@ lp_peel_depth_format_init(struct lp_peel_depth_format *depth,
    depth->width = chan->size;
    depth->shift = chan->shift;
    assert(depth->width + depth->shift <= 32);
+
+   /* Integers in two's complement sort as they are, floats by their sign. */
+   if (depth->floating)
+      depth->flip = 0x7fffffff;
+   else if (depth->width == 32)
+      depth->invert = 0x80000000;
+   if (reversed)
+      depth->invert ^= 0xffffffff;
 }
 
 

@@ -46,6 +46,8 @@ struct lp_peel_depth_format
    uint8_t bytes;    /**< of a pixel */
    uint8_t width;    /**< of the depth, in bits */
    uint8_t shift;
+   uint32_t flip;    /**< bits that a sign inverts */
+   uint32_t invert;  /**< bits that are always inverted */
 };
 
 /** A word for each of the 16 pixels of a 4x4 block, in the order of quads. */
@@ -78,30 +80,20 @@ struct lp_rast_peel
    bool stream;         /**< all of it is more than the caches hold */
 };
 
-/**
- * Depth bits, with those of the lowest place at 0, to comparable form; and
- * the other way, which is the same.
- */
+/** Depth bits, the lowest of them at 0, to comparable form, and back. */
 static inline int32_t
 lp_peel_compare_bits(const struct lp_peel_depth_format *format, uint32_t bits)
 {
-   if (format->floating)
-      bits ^= (uint32_t)((int32_t)bits >> 31) & 0x7fffffff;
-   else if (format->width == 32)
-      bits ^= 0x80000000;
-   return format->reversed ? ~bits : bits;
+   bits ^= (uint32_t)((int32_t)bits >> 31) & format->flip;
+   return bits ^ format->invert;
 }
 
 static inline uint32_t
 lp_peel_depth_bits(const struct lp_peel_depth_format *format, int32_t depth)
 {
-   uint32_t bits = format->reversed ? ~depth : depth;
+   const uint32_t bits = depth ^ format->invert;
 
-   if (format->floating)
-      bits ^= (uint32_t)((int32_t)bits >> 31) & 0x7fffffff;
-   else if (format->width == 32)
-      bits ^= 0x80000000;
-   return bits;
+   return bits ^ ((uint32_t)((int32_t)bits >> 31) & format->flip);
 }
 
 void

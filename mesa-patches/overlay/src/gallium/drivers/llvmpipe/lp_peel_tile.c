@@ -273,59 +273,86 @@ store_depth(const struct lp_peel_tile *tile, const uint32_t *const quads[4],
 }
 
 
-/** One layer and sample of a row of blocks, of those that have changed. */
+/** A block that is to be stored. */
+struct stored_block
+{
+   unsigned block;
+   unsigned counts[4];      /**< of each quad: the last layer there is */
+   const uint32_t *quads[4];
+};
+
+
+/** One layer and sample of some blocks. */
 static void
-store_layer(const struct lp_peel_tile *tile, unsigned row, unsigned layer,
-            unsigned sample)
+store_layer(const struct lp_peel_tile *tile, const struct stored_block *blocks,
+            unsigned num_blocks, unsigned layer, unsigned sample)
 {
    const struct lp_rasterizer_task *task = tile->task;
    const struct lp_scene *scene = task->scene;
+   const unsigned layer_words = tile->peel->num_words * 16;
    const uint32_t *quads[TILE_SIZE / 4][4];
-   unsigned blocks[TILE_SIZE / 4], num_blocks = 0;
-   const bool cleared = tile->cleared_depth || tile->cleared_colors;
-
-   for (unsigned x = 0; x < TILE_SIZE / 4; x++) {
-      const unsigned block = row * (TILE_SIZE / 4) + x;
-
-      if (!(tile->changed[block] & LP_PEEL_CHANGED))
-         continue;
-
-      bool present = cleared;
-      for (unsigned q = 0; q < 4; q++) {
-         const unsigned count = *group_count(tile, block, sample, q);
-
-         quads[num_blocks][q] =
-            tile_words(tile, block, MIN2(layer, count), sample) + 4 * q;
-         present |= layer <= count;
-      }
-
-      /* Else it is in memory as it was. */
-      if (present)
-         blocks[num_blocks++] = block;
-   }
 
    /* Whole cache lines, of more than the caches hold. */
    const bool stream = num_blocks == TILE_SIZE / 4 && tile->peel->stream;
+
    for (unsigned b = 0; b < num_blocks; b++) {
-      store_depth(tile, quads[b], depth_block(task, blocks[b], layer, sample),
-                  stream);
-      for (unsigned q = 0; q < 4; q++)
-         quads[b][q] += 16;
+      for (unsigned q = 0; q < 4; q++) {
+         quads[b][q] = blocks[b].quads[q] +
+                       (size_t)MIN2(layer, blocks[b].counts[q]) * layer_words;
+      }
    }
 
-   for (unsigned i = 0; i < scene->fb.nr_cbufs; i++) {
+   for (unsigned b = 0; b < num_blocks; b++) {
+      store_depth(tile, quads[b],
+                  depth_block(task, blocks[b].block, layer, sample), stream);
+   }
+
+   for (unsigned i = 0, words = 16; i < scene->fb.nr_cbufs; i++) {
       const unsigned bytes = scene->cbufs[i].format_bytes;
 
       if (!scene->fb.cbufs[i])
          continue;
       for (unsigned b = 0; b < num_blocks; b++) {
-         lp_peel_store_pixels(quads[b],
-                              color_block(task, i, blocks[b], layer, sample),
-                              scene->cbufs[i].stride, bytes, stream);
+         const uint32_t *color_quads[4];
+
          for (unsigned q = 0; q < 4; q++)
-            quads[b][q] += DIV_ROUND_UP(bytes, 4) * 16;
+            color_quads[q] = quads[b][q] + words;
+         lp_peel_store_pixels(color_quads,
+                              color_block(task, i, blocks[b].block, layer, sample),
+                              scene->cbufs[i].stride, bytes, stream);
       }
+      words += DIV_ROUND_UP(bytes, 4) * 16;
    }
+}
+
+
+/** One sample of the blocks of a row that have changed. */
+static void
+store_row(const struct lp_peel_tile *tile, unsigned row, unsigned sample)
+{
+   struct stored_block blocks[TILE_SIZE / 4];
+   unsigned num_blocks = 0, most = 0;
+
+   for (unsigned x = 0; x < TILE_SIZE / 4; x++) {
+      struct stored_block *b = &blocks[num_blocks];
+
+      b->block = row * (TILE_SIZE / 4) + x;
+      if (!(tile->changed[b->block] & LP_PEEL_CHANGED))
+         continue;
+
+      for (unsigned q = 0; q < 4; q++) {
+         b->counts[q] = *group_count(tile, b->block, sample, q);
+         b->quads[q] = tile_words(tile, b->block, 0, sample) + 4 * q;
+         most = MAX2(most, b->counts[q]);
+      }
+      num_blocks++;
+   }
+
+   /* Layers that are not there are in memory already, if they came from it. */
+   if (tile->cleared_depth || tile->cleared_colors)
+      most = tile->peel->num_layers - 1;
+   for (unsigned layer = 0; num_blocks && layer <= most; layer++)
+      store_layer(tile, blocks, num_blocks, layer, sample);
 }
 
 
@@ -349,10 +376,8 @@ store_blocks(struct lp_peel_tile *tile)
    }
 
    for (unsigned row = 0; row < DIV_ROUND_UP(task->height, 4); row++) {
-      for (unsigned s = 0; s < peel->num_samples; s++) {
-         for (unsigned layer = 0; layer < peel->num_layers; layer++)
-            store_layer(tile, row, layer, s);
-      }
+      for (unsigned s = 0; s < peel->num_samples; s++)
+         store_row(tile, row, s);
    }
    lp_peel_stream_end();
 }
