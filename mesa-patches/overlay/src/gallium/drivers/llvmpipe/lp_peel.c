@@ -25,6 +25,9 @@
 /** From this size on layers go to memory past the caches. */
 #define STREAM_SIZE (64 << 20)
 
+/** A scene grows by no more than this for the layers it peels into. */
+#define MAX_SCENE_GROWTH (256 << 20)
+
 
 /* Off: every fragment is shaded.  Makes no difference to images. */
 DEBUG_GET_ONCE_BOOL_OPTION(kbuf_cull, "LP_KBUF_CULL", true)
@@ -375,11 +378,12 @@ lp_peel_update_scene(struct lp_setup_context *setup)
          stored->num_words += lp_peel_color_words(fb->cbufs[i]->format);
    }
 
-   stored->stream =
+   const uint64_t size =
       (uint64_t)fb->width * fb->height * stored->num_samples *
-      stored->num_layers * stored->num_words * 4 > STREAM_SIZE;
+      stored->num_layers * stored->num_words * 4;
+   stored->stream = size > STREAM_SIZE;
 
    setup->fs.current.peel = stored;
-   setup->scene->peels = true;
+   setup->scene->peel_size = MIN2(size, MAX_SCENE_GROWTH);
    return true;
 }
