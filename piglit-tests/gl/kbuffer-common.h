@@ -172,4 +172,15 @@ kb_draw(const struct kb *kb);
 bool
 kb_is_softpipe(void);
 
+/**
+ * Each kind of command that draws, over all of a framebuffer of this size, with
+ * the state as it is.
+ */
+#define KB_COMMAND_SIZE 8
+#define KB_NUM_COMMANDS 7
+
+struct kb_command { const char *name; void (*draw)(void); bool is_pixels; };
+
+extern const struct kb_command kb_commands[KB_NUM_COMMANDS];
+
 #endif /* KBUFFER_COMMON_H */

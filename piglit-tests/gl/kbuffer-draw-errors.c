@@ -13,71 +13,6 @@
 
 #include "kbuffer-common.h"
 
-static const float quad[4][2] = { { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } };
-static const GLubyte indices[4] = { 0, 1, 2, 3 };
-
-/** An error of Begin leaves the context outside of Begin and End. */
-static void
-begin_end(void)
-{
-	glBegin(GL_QUADS);
-	for (int i = 0; i < 4; i++)
-		glVertex2fv(quad[i]);
-	glEnd();
-}
-
-static void
-draw_arrays(void)
-{
-	glEnableClientState(GL_VERTEX_ARRAY);
-	glVertexPointer(2, GL_FLOAT, 0, quad);
-	glDrawArrays(GL_QUADS, 0, 4);
-	glDisableClientState(GL_VERTEX_ARRAY);
-}
-
-static void
-draw_elements(void)
-{
-	glEnableClientState(GL_VERTEX_ARRAY);
-	glVertexPointer(2, GL_FLOAT, 0, quad);
-	glDrawElements(GL_QUADS, 4, GL_UNSIGNED_BYTE, indices);
-	glDisableClientState(GL_VERTEX_ARRAY);
-}
-
-static void
-rect(void)
-{
-	glRectf(-1, -1, 1, 1);
-}
-
-static void
-draw_pixels(void)
-{
-	static const float pixels[8 * 8 * 4];
-
-	glWindowPos2i(0, 0);
-	glDrawPixels(8, 8, GL_RGBA, GL_FLOAT, pixels);
-}
-
-static void
-bitmap(void)
-{
-	static const GLubyte bits[8] = { 255, 255, 255, 255, 255, 255, 255, 255 };
-
-	glWindowPos2i(0, 0);
-	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-	glBitmap(8, 8, 0, 0, 0, 0, bits);
-}
-
-static const struct { const char *name; void (*draw)(void); } commands[] = {
-	{ "Rect", rect },
-	{ "DrawArrays", draw_arrays },
-	{ "DrawElements", draw_elements },
-	{ "Begin", begin_end },
-	{ "DrawPixels", draw_pixels },
-	{ "Bitmap", bitmap },
-};
-
 /** All draw commands give the error and leave 1, 2, 3, 4 in entry 0. */
 static bool
 check_refused(const struct kb *kb)
@@ -86,14 +21,14 @@ check_refused(const struct kb *kb)
 	bool pass = true;
 
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
-	for (int i = 0; i < ARRAY_SIZE(commands); i++) {
-		commands[i].draw();
+	for (int i = 0; i < ARRAY_SIZE(kb_commands); i++) {
+		kb_commands[i].draw();
 		if (!piglit_check_gl_error(error)) {
-			printf("by %s\n", commands[i].name);
+			printf("by %s\n", kb_commands[i].name);
 			pass = false;
 		}
 		if (kb && !kb_expect(kb, 0, 0, 1, 2, 3, 4)) {
-			printf("%s has drawn\n", commands[i].name);
+			printf("%s has drawn\n", kb_commands[i].name);
 			kb_fill(kb, 0, 1, 2, 3, 4);
 			pass = false;
 		}
@@ -107,14 +42,15 @@ check_disabled_draws(const struct kb *kb)
 {
 	glDisable(GL_KBUFFER_PROGRAM_MESA);
 	glColor4f(1, 0, 1, 0);
-	rect();
+	glRectf(-1, -1, 1, 1);
 	return kb_expect(kb, 0, 0, 1, 0, 1, 0);
 }
 
 static struct kb
 make(void)
 {
-	struct kb kb = kb_create(GL_RGBA32F, 1, 0, 8, 8);
+	struct kb kb = kb_create(GL_RGBA32F, 1, 0, KB_COMMAND_SIZE,
+				 KB_COMMAND_SIZE);
 
 	kb_fill(&kb, 0, 1, 2, 3, 4);
 	return kb;
@@ -263,14 +199,14 @@ incomplete(void *data)
 	/* A depth format at a color attachment. */
 	glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1,
 				  GL_RENDERBUFFER, bad);
-	for (int i = 0; i < ARRAY_SIZE(commands); i++) {
+	for (int i = 0; i < ARRAY_SIZE(kb_commands); i++) {
 		GLenum error;
 
 		glDisable(GL_KBUFFER_PROGRAM_MESA);
-		commands[i].draw();
+		kb_commands[i].draw();
 		error = glGetError();
 		glEnable(GL_KBUFFER_PROGRAM_MESA);
-		commands[i].draw();
+		kb_commands[i].draw();
 		pass = error != GL_NO_ERROR && piglit_check_gl_error(error) &&
 			pass;
 	}

@@ -233,17 +233,6 @@ uint32_t *
 peel_read_samples(const struct peel *p, GLuint tex,
 		  const struct peel_format *format);
 
-/**
- * Each kind of command that draws, over all of a framebuffer of this size, with
- * the state as it is.
- */
-#define PEEL_COMMAND_SIZE 8
-#define PEEL_NUM_COMMANDS 7
-
-struct peel_command { const char *name; void (*draw)(void); bool is_pixels; };
-
-extern const struct peel_command peel_commands[PEEL_NUM_COMMANDS];
-
 /** A sequence of pseudorandom numbers. */
 void
 peel_seed(uint32_t seed);

@@ -12,7 +12,7 @@
 
 #include "peel-common.h"
 
-#define W PEEL_COMMAND_SIZE
+#define W KB_COMMAND_SIZE
 #define LAYERS 4
 
 /** The scene of this file: more fragments than layers, two of each depth. */
@@ -55,20 +55,20 @@ check_refused(const struct peel *p, GLenum error)
 	/* Nearer than everything. */
 	glUseProgram(0);
 	glColor4f(1, 1, 1, 1);
-	for (int i = 0; i < PEEL_NUM_COMMANDS; i++) {
+	for (int i = 0; i < KB_NUM_COMMANDS; i++) {
 		/* Mesa's DrawPixels and Bitmap have their own for this. */
-		const bool pixels = peel_commands[i].is_pixels;
+		const bool pixels = kb_commands[i].is_pixels;
 		const GLenum wanted = pixels &&
 			error == GL_INVALID_FRAMEBUFFER_OPERATION ?
 			GL_INVALID_OPERATION : error;
 
-		peel_commands[i].draw();
+		kb_commands[i].draw();
 		if (!piglit_check_gl_error(wanted)) {
-			printf("by %s\n", peel_commands[i].name);
+			printf("by %s\n", kb_commands[i].name);
 			pass = false;
 		}
 		if (!peel_check_layers(p)) {
-			printf("%s has drawn\n", peel_commands[i].name);
+			printf("%s has drawn\n", kb_commands[i].name);
 			return false;
 		}
 	}

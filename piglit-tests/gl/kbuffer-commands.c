@@ -4,13 +4,13 @@
  */
 
 /**
- * \file peel-commands.c
+ * \file kbuffer-commands.c
  * Each kind of command that draws.
  */
 
-#include "peel-common.h"
+#include "kbuffer-common.h"
 
-#define W PEEL_COMMAND_SIZE
+#define W KB_COMMAND_SIZE
 
 static const float quad[4][2] = { { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } };
 static const GLubyte indices[4] = { 0, 1, 2, 3 };
@@ -82,7 +82,7 @@ bitmap(void)
 	glBitmap(W, W, 0, 0, 0, 0, bits);
 }
 
-const struct peel_command peel_commands[PEEL_NUM_COMMANDS] = {
+const struct kb_command kb_commands[KB_NUM_COMMANDS] = {
 	{ "Rect", rect },
 	{ "DrawArrays", draw_arrays },
 	{ "DrawElements", draw_elements },
