@@ -6,10 +6,8 @@
 // is that of all fragments once k is their number, and none of the k nearest before. Fragments of
 // equal depth are mixed up: that is the method's own error.
 
-#include "background.hpp"
+#include "layer_resolve.hpp"
 #include "renderer.hpp"
-
-#include <fmt/format.h>
 
 #include <array>
 #include <string>
@@ -52,31 +50,6 @@ void main()
 )";
 }
 
-// Layers in the middle may be empty, so all are looked at. llvmpipe is fastest without a loop.
-std::string resolve_source(int layers)
-{
-    std::string source = R"(
-layout(binding = 0, rgba8) readonly uniform image2DArray layers;
-out vec4 color;
-vec3 sum = vec3(0.0);
-float transmittance = 1.0;
-
-void add(vec4 fragment)
-{
-    sum += transmittance * fragment.a * fragment.rgb;
-    transmittance *= 1.0 - fragment.a;
-}
-
-void main()
-{
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-)";
-    for (int layer = 0; layer < layers; ++layer)
-        source += fmt::format("    add(imageLoad(layers, ivec3(pixel, {})));\n", layer);
-    return source +
-           fmt::format("    color = vec4(sum + transmittance * {}, 1.0);\n}}\n", background_glsl());
-}
-
 class DualPeeling final : public Renderer
 {
 public:
@@ -85,7 +58,7 @@ public:
           back_layers_(k / 2), bounds_{make_texture_2d(gl, GL_RG32F, size.width, size.height),
                                        make_texture_2d(gl, GL_RG32F, size.width, size.height)},
           layers_(make_texture_2d_array(gl, GL_RGBA8, size.width, size.height, k)),
-          framebuffer_(gl), empty_(gl), first_(make_geometry_program(gl, "", R"(
+          framebuffer_(gl), first_(make_geometry_program(gl, "", R"(
 out vec2 bounds;
 
 void main()
@@ -94,7 +67,8 @@ void main()
 }
 )")),
           peel_(make_geometry_program(gl, "", peel_source())),
-          resolve_(make_view_program(gl, resolve_source(k)))
+          // Where front and back meet.
+          resolve_(gl, k, EmptyLayers::anywhere)
     {
     }
 
@@ -118,10 +92,7 @@ void main()
         gl_.BlendEquation(GL_FUNC_ADD);
         gl_.Disable(GL_BLEND);
 
-        gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
-        gl_.BindImageTexture(0, layers_.id(), 0, GL_TRUE, 0, GL_READ_ONLY, GL_RGBA8);
-        resolve_.use();
-        draw_full_screen(gl_, empty_);
+        resolve_.draw(layers_, target);
     }
 
     int passes() const override { return 1 + front_layers_; }
@@ -153,10 +124,9 @@ private:
     std::array<Texture, 2> bounds_;
     Texture layers_;
     Framebuffer framebuffer_;
-    VertexArray empty_;
     Program first_;
     Program peel_;
-    Program resolve_;
+    LayerResolve resolve_;
 };
 
 } // namespace

@@ -16,7 +16,7 @@ namespace kb::bench
 // shorter code than texelFetch.
 constexpr int layers_a_turn = 8;
 
-static std::string resolve_source(int layers)
+static std::string resolve_source(int layers, EmptyLayers empty_layers)
 {
     std::string source = R"(
 layout(binding = 0, rgba8) readonly uniform image2DArray layers;
@@ -34,32 +34,34 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
 )";
-    const auto add_layers = [&source](const char *first, int count) {
+    const auto add_layers = [&source](const char *first, int count, bool may_end) {
         for (int i = 0; i < count; ++i)
             source += fmt::format(
                 "        vec4 fragment{0} = imageLoad(layers, ivec3(pixel, {1} + {0}));\n", i,
                 first);
-        if (count == layers_a_turn)
+        if (may_end)
             source += "        if (fragment0.a == 0.0)\n            break;\n";
         for (int i = 0; i < count; ++i)
             source += fmt::format("        add(fragment{});\n", i);
     };
-    const int turns = layers / layers_a_turn;
+    // If all have to be looked at, no loop is fastest.
+    const int turns = empty_layers == EmptyLayers::behind ? layers / layers_a_turn : 0;
     if (turns > 0) {
         source += fmt::format("    for (int first = 0; first < {}; first += {}) {{\n",
                               turns * layers_a_turn, layers_a_turn);
-        add_layers("first", layers_a_turn);
+        add_layers("first", layers_a_turn, true);
         source += "    }\n";
     }
     source += "    {\n";
-    add_layers(fmt::format("{}", turns * layers_a_turn).c_str(), layers % layers_a_turn);
+    add_layers(fmt::format("{}", turns * layers_a_turn).c_str(), layers - turns * layers_a_turn,
+               false);
     source += "    }\n";
     return source +
            fmt::format("    color = vec4(sum + transmittance * {}, 1.0);\n}}\n", background_glsl());
 }
 
-LayerResolve::LayerResolve(const Gl &gl, int layers)
-    : gl_(gl), program_(make_view_program(gl, resolve_source(layers))), empty_(gl)
+LayerResolve::LayerResolve(const Gl &gl, int layers, EmptyLayers empty_layers)
+    : gl_(gl), program_(make_view_program(gl, resolve_source(layers, empty_layers))), empty_(gl)
 {
 }
 
