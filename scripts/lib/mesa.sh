@@ -2,7 +2,6 @@
 # shellcheck shell=bash
 
 libdir=lib/$(gcc -print-multiarch 2>/dev/null || true)
-native=$build/native.ini
 
 newest_llvm() {
     local version
@@ -19,12 +18,14 @@ newest_llvm() {
 # the same depth, so trees of one clone and clones anywhere share results. The cache is the user's.
 export CCACHE_BASEDIR=$build CCACHE_NOHASHDIR=1
 
+# write_native_file [C CXX]: the compilers of what is configured from here on; GCC's, else
 write_native_file() {
+    native=$build/native${1:+-$1}.ini
     mkdir -p "$build"
     cat >"$native.new" <<END
 [binaries]
-c = ['ccache', 'gcc']
-cpp = ['ccache', 'g++']
+c = ['ccache', '${1:-gcc}']
+cpp = ['ccache', '${2:-g++}']
 python3 = '$python'
 llvm-config = '$(newest_llvm)'
 END
@@ -38,6 +39,19 @@ mesa_options=(-Dgallium-drivers=swrast -Dvulkan-drivers= -Dosmesa=true -Dglx=dri
     -Dvalgrind=disabled -Dlibunwind=disabled -Dlmsensors=disabled)
 release_options=(--buildtype=release -Db_ndebug=true)
 debug_options=(--buildtype=debugoptimized -Db_ndebug=false)
+
+# Instrumented by Clang. The runtime comes with the program that loads the library (b_lundef), which
+# may be a fuzzer: its coverage is in the same build, and costs little where nobody asks for it.
+# vptr needs type information, which LLVM and what is derived from its classes are compiled without.
+instrumented=(--buildtype=plain -Doptimization=1 -Db_ndebug=false -Db_lundef=false)
+traceable='-g1 -fno-omit-frame-pointer'
+sanitize_options=("${instrumented[@]}" '-Db_sanitize=address,undefined')
+sanitize_args="$traceable -fno-sanitize=vptr"
+fuzz_args="$traceable -fsanitize=fuzzer-no-link -fno-sanitize=vptr"
+# Threads are the same whatever the window system.
+thread_options=("${instrumented[@]}" -Db_sanitize=thread "-Dc_args=$traceable"
+    "-Dcpp_args=$traceable" -Dglx=disabled -Degl=disabled -Dgbm=disabled -Dplatforms=
+    -Dglvnd=disabled -Dgles2=disabled)
 
 # configure WHAT SOURCE BUILD_DIR OPTION...: only when the options are not those of the last time.
 # The stamp is written last, so a half-configured folder is made anew.
@@ -75,12 +89,22 @@ build_mesa() {
 
 # The samples, tools and unit tests, against build/prefix
 build_project() {
-    local start=$SECONDS
+    build_project_in project prefix --buildtype=release
+}
+
+# The same against the sanitized Mesa, sanitized
+build_sanitized_project() {
+    build_project_in project-sanitize sanitize-prefix "${sanitize_options[@]}" \
+        "-Dcpp_args=$sanitize_args"
+}
+
+build_project_in() { # NAME PREFIX_NAME OPTION...
+    local name=$1 prefix=$build/$2 start=$SECONDS
+    shift 2
     [ -f "$root/meson.build" ] || return 0
-    export PKG_CONFIG_PATH=$build/prefix/$libdir/pkgconfig
-    configure "the project" "$root" "$build/project" --buildtype=release \
-        -Dprefix="$build/prefix" --libdir="$libdir"
-    say "Building the project"
-    run_ninja "the project" project-ninja.log "$build/project"
-    note "the project is in build/project ($((SECONDS - start)) s)"
+    export PKG_CONFIG_PATH=$prefix/$libdir/pkgconfig
+    configure "the $name" "$root" "$build/$name" -Dprefix="$prefix" --libdir="$libdir" "$@"
+    say "Building the $name"
+    run_ninja "the $name" "$name-ninja.log" "$build/$name"
+    note "the $name is in build/$name ($((SECONDS - start)) s)"
 }
