@@ -4,7 +4,7 @@
 # use_prefix PREFIX: GL programs started from here on use its Mesa, through libglvnd or not.
 use_prefix() {
     local lib
-    lib=$(dirname "$(find "$1" -name 'libEGL_mesa.so.0' -print -quit)")
+    lib=$(dirname "$(find "$1/" -name 'libEGL_mesa.so.0' -print -quit)")
     [ -e "$lib/libEGL_mesa.so.0" ] || die "no Mesa with EGL in $1"
     export LD_LIBRARY_PATH=$lib
     export __GLX_VENDOR_LIBRARY_NAME=mesa
@@ -15,13 +15,26 @@ use_prefix() {
         MESA_LOADER_DRIVER_OVERRIDE
 }
 
-# check_renderer DRIVER: the driver that answers in a surfaceless context is the one that is wanted.
+# check_renderer DRIVER [PLATFORM]: the driver that answers in a surfaceless context, or one of
+# another of waffle's platforms, is the one that is wanted.
 check_renderer() {
     local renderer
-    renderer=$(GALLIUM_DRIVER=$1 wflinfo -p surfaceless_egl -a gl 2>&1 |
+    renderer=$(GALLIUM_DRIVER=$1 wflinfo -p "${2:-surfaceless_egl}" -a gl 2>&1 |
         sed -n 's/^OpenGL renderer string: //p') || true
     case $renderer in
     "$1"*) ;;
     *) die "asked for $1, but '$renderer' answers" "Is LD_LIBRARY_PATH's Mesa whole?" ;;
     esac
+}
+
+# start_xvfb LOG: an X server of its own for all that is started from here on; it ends with the
+# command.
+start_xvfb() {
+    local display
+    # Xvfb writes the number of the display that it has found free.
+    exec 8< <(exec Xvfb -displayfd 1 -screen 0 640x480x24 -nolisten tcp -noreset 2>"$1")
+    xvfb=$!
+    trap 'kill "$xvfb" 2>/dev/null; cleanup' EXIT
+    read -r -t 30 -u 8 display || die "Xvfb does not start" "See $1"
+    export DISPLAY=:$display
 }

@@ -74,6 +74,7 @@ build_tests() { # PREFIX
     logged "configuring the tests" piglit-tests-configure.log \
         cmake -S "$tests" -B "$piglit/tests" -G Ninja -DPIGLIT_SRC="$piglit/src" \
         -DPIGLIT_BUILD="$piglit/build" -DKBUFFER_INCLUDE="$1/include" \
+        -DOSMESA="$(find "$1/" -name libOSMesa.so -print -quit)" \
         -DCMAKE_C_COMPILER_LAUNCHER=ccache
     run_ninja "the tests" piglit-tests-build.log "$piglit/tests"
     "$python" "$tests/mkprofile.py" "$tests" "$piglit/tests" \
