@@ -10,49 +10,10 @@
  * Contexts may draw in turn, and in threads at the same time.
  */
 
-#include "kbuffer-common.h"
-#include "piglit-framework-gl/piglit_wfl_framework.h"
-
-#include <pthread.h>
+#include "kbuffer-contexts.h"
 
 #define W 64
 #define K GL_KBUFFER_PROGRAM_MESA
-
-static struct piglit_wfl_framework *
-framework(void)
-{
-	return piglit_wfl_framework(gl_fw);
-}
-
-static void
-make_current_on(struct waffle_window *window, struct waffle_context *context)
-{
-	if (!waffle_make_current(framework()->display, window, context)) {
-		printf("a context cannot be made current: %s\n",
-		       waffle_error_get_info()->message);
-		piglit_report_result(PIGLIT_FAIL);
-	}
-}
-
-static void
-make_current(struct waffle_context *context)
-{
-	make_current_on(framework()->window, context);
-}
-
-static struct waffle_context *
-new_context(bool share)
-{
-	struct piglit_wfl_framework *wfl = framework();
-	struct waffle_context *context = waffle_context_create(
-		wfl->config, share ? wfl->context : NULL);
-
-	if (!context) {
-		printf("no second context\n");
-		piglit_report_result(PIGLIT_FAIL);
-	}
-	return context;
-}
 
 /** A framebuffer of the current context for a shared or own texture. */
 static GLuint
@@ -71,7 +32,7 @@ framebuffer(GLuint tex)
 static enum piglit_result
 programs(void *data)
 {
-	struct waffle_context *second = new_context(true);
+	struct waffle_context *second = kb_new_context(true);
 	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, W);
 	GLuint name = kb_program("ADD result.kbuffer[0], program.env[0], "
 				 "program.local[0];");
@@ -86,7 +47,7 @@ programs(void *data)
 	pass = kb_expect(&kb, 0, 0, 11, 22, 33, 44) && pass;
 	glFinish();
 
-	make_current(second);
+	kb_make_current(second);
 	/* Nothing of the context's own state came along. */
 	pass = !glIsEnabled(K) && glIsProgramARB(name) && pass;
 	glGetProgramivARB(K, GL_PROGRAM_BINDING_ARB, &bound);
@@ -103,7 +64,7 @@ programs(void *data)
 	pass = piglit_check_gl_error(GL_NO_ERROR) && pass;
 	glFinish();
 
-	make_current(framework()->context);
+	kb_make_current(NULL);
 	kb_draw(&kb);
 	pass = kb_expect(&kb, 0, 0, 101, 2, 3, 4) && pass;
 	glProgramEnvParameter4fARB(K, 0, 0, 0, 0, 0);
@@ -115,7 +76,7 @@ programs(void *data)
 static enum piglit_result
 deleted_elsewhere(void *data)
 {
-	struct waffle_context *second = new_context(true);
+	struct waffle_context *second = kb_new_context(true);
 	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, W);
 	GLuint name;
 	bool pass = true;
@@ -124,10 +85,10 @@ deleted_elsewhere(void *data)
 	glEnable(K);
 	kb_draw(&kb);
 	glFinish();
-	make_current(second);
+	kb_make_current(second);
 	glDeleteProgramsARB(1, &name);
 	glFinish();
-	make_current(framework()->context);
+	kb_make_current(NULL);
 	kb_draw(&kb);
 	pass = kb_expect(&kb, 0, 0, 2, 2, 2, 2) && pass;
 	waffle_context_destroy(second);
@@ -143,13 +104,13 @@ made_elsewhere(void *data)
 	static const char string[] = "!!ARBfp1.0\n"
 		"OPTION MESA_kbuffer_program;\n"
 		"ADD result.kbuffer[0], kbuffer[0], 2;\nEND\n";
-	struct waffle_context *second = new_context(true);
+	struct waffle_context *second = kb_new_context(true);
 	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, W);
 	GLuint name;
 	bool pass = true;
 
 	glFinish();
-	make_current(second);
+	kb_make_current(second);
 	glGenProgramsARB(1, &name);
 	glBindProgramARB(K, name);
 	pass = kb_load(K, string, strlen(string)) == GL_NO_ERROR;
@@ -157,7 +118,7 @@ made_elsewhere(void *data)
 	glEnable(K);
 	kb_draw(&kb);
 	glFinish();
-	make_current(framework()->context);
+	kb_make_current(NULL);
 	waffle_context_destroy(second);
 	glBindProgramARB(K, name);
 	glEnable(K);
@@ -170,38 +131,30 @@ made_elsewhere(void *data)
 static enum piglit_result
 not_shared(void *data)
 {
-	struct waffle_context *second = new_context(false);
+	struct waffle_context *second = kb_new_context(false);
 	GLuint name = kb_program("MOV result.kbuffer[0], 1;");
 	bool pass;
 
-	make_current(second);
+	kb_make_current(second);
 	pass = !glIsProgramARB(name);
-	make_current(framework()->context);
+	kb_make_current(NULL);
 	pass = glIsProgramARB(name) && pass;
 	waffle_context_destroy(second);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
-struct worker {
-	struct waffle_context *context;
-	struct waffle_window *window;   /**< current in one thread only */
-	int number;
-	bool pass;
-};
-
-/** Counts to 200 in steps of the worker's own, in a context of its own. */
-static void *
-work(void *data)
+/** Counts to 200 in steps of the worker's own. */
+static void
+work(struct kb_worker *w)
 {
-	struct worker *w = data;
 	struct kb kb = {
 		.target = GL_TEXTURE_2D, .format = GL_RGBA32F,
 		.attachments = 1, .width = W, .height = W
 	};
+	const int step = w->number + 1;
 	char string[256];
 	GLuint name;
 
-	make_current_on(w->window, w->context);
 	glGenTextures(1, &kb.tex[0]);
 	glBindTexture(GL_TEXTURE_2D, kb.tex[0]);
 	glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, W, W, 0, GL_RGBA, GL_FLOAT,
@@ -211,7 +164,6 @@ work(void *data)
 	glGenProgramsARB(1, &name);
 	glBindProgramARB(K, name);
 	glEnable(K);
-	w->pass = true;
 	for (int i = 0; i < 200; i++) {
 		/* A program string now and then: compiling runs beside. */
 		if (i % 20 == 0) {
@@ -219,46 +171,20 @@ work(void *data)
 				 "OPTION MESA_kbuffer_program;\nADD "
 				 "result.kbuffer[0], kbuffer[0], %d;\nMOV "
 				 "result.kbuffer[0].y, %d;\nEND\n",
-				 w->number, i);
+				 step, i);
 			w->pass = kb_load(K, string, strlen(string)) ==
 				GL_NO_ERROR && w->pass;
 		}
 		kb_draw(&kb);
 	}
-	w->pass = kb_expect(&kb, 0, 0, 200 * w->number, 180, 200 * w->number,
-			    200 * w->number) && w->pass;
-	w->pass = piglit_check_gl_error(GL_NO_ERROR) && w->pass;
-	waffle_make_current(framework()->display, NULL, NULL);
-	return NULL;
+	w->pass = kb_expect(&kb, 0, 0, 200 * step, 180, 200 * step,
+			    200 * step) && w->pass;
 }
 
 static enum piglit_result
 threads(void *data)
 {
-	struct worker workers[4];
-	pthread_t handles[4];
-	bool pass = true;
-
-	for (int i = 0; i < 4; i++) {
-		workers[i].context = new_context(false);
-		workers[i].window = waffle_window_create(framework()->config,
-							 W, W);
-		workers[i].number = i + 1;
-	}
-	/* The first alone: piglit's function pointers are resolved then. */
-	waffle_make_current(framework()->display, NULL, NULL);
-	work(&workers[0]);
-	for (int i = 1; i < 4; i++)
-		pthread_create(&handles[i], NULL, work, &workers[i]);
-	for (int i = 1; i < 4; i++)
-		pthread_join(handles[i], NULL);
-	make_current(framework()->context);
-	for (int i = 0; i < 4; i++) {
-		pass = workers[i].pass && pass;
-		waffle_context_destroy(workers[i].context);
-		waffle_window_destroy(workers[i].window);
-	}
-	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+	return kb_run_in_threads(work);
 }
 
 const struct piglit_subtest kbuffer_subtests[] = {

@@ -10,119 +10,8 @@
  * lists like any other; and the limit is one that framebuffers can use.
  */
 
+#include "kbuffer-capability.h"
 #include "peel-common.h"
-
-static bool
-check_enabled(bool wanted)
-{
-	GLboolean b = !wanted;
-	GLint i = -1;
-	GLfloat f = -1;
-	GLdouble d = -1;
-	GLboolean is = glIsEnabled(GL_DEPTH_PEELING_MESA);
-
-	glGetBooleanv(GL_DEPTH_PEELING_MESA, &b);
-	glGetIntegerv(GL_DEPTH_PEELING_MESA, &i);
-	glGetFloatv(GL_DEPTH_PEELING_MESA, &f);
-	glGetDoublev(GL_DEPTH_PEELING_MESA, &d);
-	if (is == wanted && b == wanted && i == wanted && f == wanted &&
-	    d == wanted)
-		return piglit_check_gl_error(GL_NO_ERROR);
-	printf("expected %d, IsEnabled %d, GetBoolean %d, GetInteger %d, "
-	       "GetFloat %g, GetDouble %g\n", wanted, is, b, i, f, d);
-	return false;
-}
-
-static enum piglit_result
-initial(void *data)
-{
-	return check_enabled(false) ? PIGLIT_PASS : PIGLIT_FAIL;
-}
-
-static enum piglit_result
-toggle(void *data)
-{
-	bool pass;
-
-	glEnable(GL_DEPTH_PEELING_MESA);
-	pass = check_enabled(true);
-	glEnable(GL_DEPTH_PEELING);
-	pass = check_enabled(true) && pass;
-	glDisable(GL_DEPTH_PEELING);
-	pass = check_enabled(false) && pass;
-	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
-}
-
-/** No other capability changes with it, nor it with another. */
-static enum piglit_result
-apart_from_others(void *data)
-{
-	static const GLenum others[] = {
-		GL_DEPTH_TEST, GL_STENCIL_TEST, GL_BLEND, GL_KBUFFER_PROGRAM_MESA
-	};
-	bool pass = true;
-
-	for (int i = 0; i < ARRAY_SIZE(others); i++) {
-		glEnable(others[i]);
-		pass = check_enabled(false) && pass;
-		glDisable(others[i]);
-		glEnable(GL_DEPTH_PEELING_MESA);
-		pass = !glIsEnabled(others[i]) && pass;
-		glDisable(GL_DEPTH_PEELING_MESA);
-	}
-	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
-}
-
-/** The group is that of ENABLE_BIT and no other. */
-static enum piglit_result
-push_pop(void *data)
-{
-	const GLbitfield mask = (GLbitfield)(intptr_t)data;
-	const bool saved = mask & GL_ENABLE_BIT;
-	bool pass = true;
-
-	for (int initially = 0; initially < 2; initially++) {
-		if (initially)
-			glEnable(GL_DEPTH_PEELING_MESA);
-		else
-			glDisable(GL_DEPTH_PEELING_MESA);
-		glPushAttrib(mask);
-		if (initially)
-			glDisable(GL_DEPTH_PEELING_MESA);
-		else
-			glEnable(GL_DEPTH_PEELING_MESA);
-		glPopAttrib();
-		pass = check_enabled(saved ? initially : !initially) && pass;
-	}
-	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
-}
-
-static enum piglit_result
-display_list(void *data)
-{
-	GLuint list = glGenLists(2);
-	bool pass;
-
-	glNewList(list, GL_COMPILE);
-	glEnable(GL_DEPTH_PEELING_MESA);
-	glEndList();
-	glNewList(list + 1, GL_COMPILE);
-	glDisable(GL_DEPTH_PEELING_MESA);
-	glEndList();
-
-	pass = check_enabled(false);
-	glCallList(list);
-	pass = check_enabled(true) && pass;
-	glCallList(list + 1);
-	pass = check_enabled(false) && pass;
-
-	glNewList(list, GL_COMPILE_AND_EXECUTE);
-	glEnable(GL_DEPTH_PEELING_MESA);
-	glEndList();
-	pass = check_enabled(true) && pass;
-	glDeleteLists(list, 2);
-	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
-}
 
 /**
  * The next draw does what the capability says at that time: popped state of
@@ -251,46 +140,37 @@ changes_take_effect(void *data)
 	return peel_end(&p, pass);
 }
 
+/** Another name of the same value. */
 static enum piglit_result
-between_begin_and_end(void *data)
+short_name(void *data)
 {
 	bool pass;
 
-	glBegin(GL_TRIANGLES);
-	glEnable(GL_DEPTH_PEELING_MESA);
-	glEnd();
-	pass = piglit_check_gl_error(GL_INVALID_OPERATION);
-	return check_enabled(false) && pass ? PIGLIT_PASS : PIGLIT_FAIL;
+	glEnable(GL_DEPTH_PEELING);
+	pass = glIsEnabled(GL_DEPTH_PEELING_MESA);
+	glDisable(GL_DEPTH_PEELING);
+	return pass && !glIsEnabled(GL_DEPTH_PEELING_MESA) ? PIGLIT_PASS :
+		PIGLIT_FAIL;
 }
 
 static enum piglit_result
 limit(void *data)
 {
-	GLboolean b = 0;
-	GLint i = -1;
-	GLfloat f = -1;
-	GLdouble d = -1;
+	bool pass = kb_check_limit(GL_MAX_DEPTH_PEELING_LAYERS_MESA, 64);
 	struct peel p;
-	bool pass;
+	GLint max;
 
-	glGetBooleanv(GL_MAX_DEPTH_PEELING_LAYERS_MESA, &b);
-	glGetIntegerv(GL_MAX_DEPTH_PEELING_LAYERS_MESA, &i);
-	glGetFloatv(GL_MAX_DEPTH_PEELING_LAYERS_MESA, &f);
-	glGetDoublev(GL_MAX_DEPTH_PEELING_LAYERS_MESA, &d);
-	pass = b && i >= 64 && f == i && d == i;
-	if (!pass)
-		printf("GetBoolean %d, GetInteger %d, GetFloat %g, "
-		       "GetDouble %g\n", b, i, f, d);
+	glGetIntegerv(GL_MAX_DEPTH_PEELING_LAYERS_MESA, &max);
 
 	/* So many layers can be made, and are peeled into. */
 	p = peel_create(&(struct peel_shape) {
-		i, 4, 4, 0, GL_DEPTH_COMPONENT32F, { GL_R32UI } });
-	for (int n = 0; n < i + 2; n++) {
+		max, 4, 4, 0, GL_DEPTH_COMPONENT32F, { GL_R32UI } });
+	for (int n = 0; n < max + 2; n++) {
 		const struct peel_quad q =
 			peel_full(&p, 1 - (n + 1) / 1024.f, n);
 
 		peel_draw(&p, &q, 1);
-		if (n == i - 1)
+		if (n == max - 1)
 			pass = peel_check(&p) && pass;
 	}
 	pass = peel_check(&p) && pass;
@@ -298,18 +178,13 @@ limit(void *data)
 }
 
 const struct piglit_subtest kbuffer_subtests[] = {
-	KB_SUBTEST("initial", initial, NULL),
-	KB_SUBTEST("toggle", toggle, NULL),
-	KB_SUBTEST("apart-from-others", apart_from_others, NULL),
-	KB_SUBTEST("push-enable-bit", push_pop, GL_ENABLE_BIT),
-	KB_SUBTEST("push-all-bits", push_pop, GL_ALL_ATTRIB_BITS),
-	KB_SUBTEST("push-depth-buffer-bit", push_pop, GL_DEPTH_BUFFER_BIT),
-	KB_SUBTEST("display-list", display_list, NULL),
+	KB_CAPABILITY_SUBTESTS(GL_DEPTH_PEELING_MESA, "depth-buffer-bit",
+			       GL_DEPTH_BUFFER_BIT),
+	KB_SUBTEST("short-name", short_name, NULL),
 	KB_SUBTEST("pop-takes-effect", pop_takes_effect, NULL),
 	KB_SUBTEST("changes-take-effect", changes_take_effect, draw_arrays),
 	KB_SUBTEST("changes-between-vertices", changes_take_effect,
 		   draw_immediately),
-	KB_SUBTEST("between-begin-and-end", between_begin_and_end, NULL),
 	KB_SUBTEST("limit", limit, NULL),
 	KB_SUBTEST_END
 };

@@ -11,50 +11,12 @@
  * peeled is never continued by another, and survives it.
  */
 
+#include "kbuffer-contexts.h"
 #include "peel-common.h"
-#include "piglit-framework-gl/piglit_wfl_framework.h"
-
-#include <pthread.h>
 
 #define W 16
 #define LAYERS 3
 #define FIRST GL_DEPTH_PEELING_FIRST_LAYER_MESA
-
-static struct piglit_wfl_framework *
-framework(void)
-{
-	return piglit_wfl_framework(gl_fw);
-}
-
-static void
-make_current_on(struct waffle_window *window, struct waffle_context *context)
-{
-	if (!waffle_make_current(framework()->display, window, context)) {
-		printf("a context cannot be made current: %s\n",
-		       waffle_error_get_info()->message);
-		piglit_report_result(PIGLIT_FAIL);
-	}
-}
-
-static void
-make_current(struct waffle_context *context)
-{
-	make_current_on(framework()->window, context);
-}
-
-static struct waffle_context *
-new_context(bool share)
-{
-	struct piglit_wfl_framework *wfl = framework();
-	struct waffle_context *context = waffle_context_create(
-		wfl->config, share ? wfl->context : NULL);
-
-	if (!context) {
-		printf("no second context\n");
-		piglit_report_result(PIGLIT_FAIL);
-	}
-	return context;
-}
 
 static void
 draw_scene(struct peel *p)
@@ -81,14 +43,14 @@ prepare(const struct peel *p)
 static enum piglit_result
 textures(void *data)
 {
-	struct waffle_context *second = new_context(true);
+	struct waffle_context *second = kb_new_context(true);
 	struct peel p = peel_simple(LAYERS);
 	GLuint fbo;
 	bool pass;
 
 	draw_scene(&p);
 	glFinish();
-	make_current(second);
+	kb_make_current(second);
 	glGenFramebuffers(1, &fbo);
 	glBindFramebuffer(GL_FRAMEBUFFER, fbo);
 	glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, p.depth_tex,
@@ -107,7 +69,7 @@ textures(void *data)
 	glDeleteFramebuffers(1, &fbo);
 	glFinish();
 
-	make_current(framework()->context);
+	kb_make_current(NULL);
 	waffle_context_destroy(second);
 	glFramebufferParameteri(GL_FRAMEBUFFER, FIRST, 0);
 	p.model.overflow = false;
@@ -119,7 +81,7 @@ static enum piglit_result
 same_framebuffer(void *data)
 {
 	const char *order = data;
-	struct waffle_context *second = new_context(true);
+	struct waffle_context *second = kb_new_context(true);
 	struct peel p = peel_simple(LAYERS);
 	const struct peel_quad q = peel_full(&p, .125f, 1);
 	bool pass;
@@ -128,7 +90,7 @@ same_framebuffer(void *data)
 	peel_next(&p);
 	draw_scene(&p);
 	glFinish();
-	make_current(second);
+	kb_make_current(second);
 	prepare(&p);
 	glEnable(GL_DEPTH_PEELING_MESA);
 	glUseProgram(p.program);
@@ -140,7 +102,7 @@ same_framebuffer(void *data)
 	pass = piglit_check_gl_error(GL_INVALID_OPERATION) && pass;
 	pass = peel_get(FIRST) == LAYERS && peel_check_layers(&p) && pass;
 	glFinish();
-	make_current(framework()->context);
+	kb_make_current(NULL);
 	pass = peel_check(&p) && pass;
 	peel_next(&p);
 	draw_scene(&p);
@@ -148,11 +110,11 @@ same_framebuffer(void *data)
 	glFinish();
 
 	/* Started over there, it is that context's from then on. */
-	make_current(second);
+	kb_make_current(second);
 	if (strcmp(order, "delete") == 0) {
 		glBindFramebuffer(GL_FRAMEBUFFER, 0);
 		glDeleteFramebuffers(1, &p.fbo);
-		make_current(framework()->context);
+		kb_make_current(NULL);
 		glUseProgram(p.program);
 		glBindFramebuffer(GL_FRAMEBUFFER, piglit_winsys_fbo);
 		waffle_context_destroy(second);
@@ -163,7 +125,7 @@ same_framebuffer(void *data)
 		draw_scene(&p);
 		pass = peel_check(&p) && pass;
 		glFinish();
-		make_current(framework()->context);
+		kb_make_current(NULL);
 		if (strcmp(order, "destroy") == 0) {
 			/* Its part goes with it. */
 			waffle_context_destroy(second);
@@ -193,49 +155,38 @@ same_framebuffer(void *data)
 	return peel_end(&p, pass);
 }
 
-struct worker {
-	struct waffle_context *context;
-	struct waffle_window *window;   /**< current in one thread only */
-	int layers;
-	bool pass;
-};
-
 static void
-layers(const struct worker *w, GLenum format, GLenum base, GLenum attachment)
+make_layers(int layers, GLenum format, GLenum base, GLenum attachment)
 {
 	GLuint tex;
 
 	glGenTextures(1, &tex);
 	glBindTexture(GL_TEXTURE_2D_ARRAY, tex);
-	glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, format, W, W, w->layers, 0, base,
+	glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, format, W, W, layers, 0, base,
 		     GL_FLOAT, NULL);
 	glFramebufferTexture(GL_FRAMEBUFFER, attachment, tex, 0);
 }
 
 /**
- * Peels 60 fragments, three of each depth, by as many passes as it takes, in
- * a context of its own.
+ * Peels 60 fragments, three of each depth, by as many passes as it takes.
  */
-static void *
-work(void *data)
+static void
+work(struct kb_worker *w)
 {
-	struct worker *w = data;
-	float *depths = malloc(w->layers * W * W * sizeof(float));
+	const int layers = 2 * w->number + 1;
+	float *depths = malloc(layers * W * W * sizeof(float));
 	GLint overflow = 1;
 	int rank = 0;
-
-	make_current_on(w->window, w->context);
 	GLuint fbo;
 
 	glGenFramebuffers(1, &fbo);
 	glBindFramebuffer(GL_FRAMEBUFFER, fbo);
-	layers(w, GL_RGBA8, GL_RGBA, GL_COLOR_ATTACHMENT0);
-	layers(w, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT,
-	       GL_DEPTH_ATTACHMENT);
+	make_layers(layers, GL_RGBA8, GL_RGBA, GL_COLOR_ATTACHMENT0);
+	make_layers(layers, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT,
+		    GL_DEPTH_ATTACHMENT);
 	glViewport(0, 0, W, W);
 	glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
 	glEnable(GL_DEPTH_PEELING_MESA);
-	w->pass = true;
 	while (overflow && rank < 120) {
 		glFramebufferParameteri(GL_FRAMEBUFFER, FIRST, rank);
 		glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -250,13 +201,13 @@ work(void *data)
 		glEnd();
 		glGetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT,
 			      GL_FLOAT, depths);
-		for (int i = 0; i < w->layers * W * W; i++) {
+		for (int i = 0; i < layers * W * W; i++) {
 			const int at = rank + i / (W * W);
 			const float want = at < 60 ? (1 + at / 3) / 32.f : 1;
 
 			if (depths[i] != want) {
 				printf("rank %d of %d layers: %g, expected "
-				       "%g\n", at, w->layers, depths[i], want);
+				       "%g\n", at, layers, depths[i], want);
 				w->pass = false;
 				break;
 			}
@@ -264,45 +215,19 @@ work(void *data)
 		glGetFramebufferParameteriv(GL_FRAMEBUFFER,
 					    GL_DEPTH_PEELING_OVERFLOW_MESA,
 					    &overflow);
-		rank += w->layers;
+		rank += layers;
 	}
-	if (rank < 60 || rank > 60 + 2 * w->layers) {
-		printf("%d layers end at rank %d\n", w->layers, rank);
+	if (rank < 60 || rank > 60 + 2 * layers) {
+		printf("%d layers end at rank %d\n", layers, rank);
 		w->pass = false;
 	}
-	w->pass = piglit_check_gl_error(GL_NO_ERROR) && w->pass;
-	waffle_make_current(framework()->display, NULL, NULL);
 	free(depths);
-	return NULL;
 }
 
 static enum piglit_result
 threads(void *data)
 {
-	struct worker workers[4];
-	pthread_t handles[4];
-	bool pass = true;
-
-	for (int i = 0; i < 4; i++) {
-		workers[i].context = new_context(false);
-		workers[i].window = waffle_window_create(framework()->config,
-							 W, W);
-		workers[i].layers = 2 * i + 1;
-	}
-	/* The first alone: piglit's function pointers are resolved then. */
-	waffle_make_current(framework()->display, NULL, NULL);
-	work(&workers[0]);
-	for (int i = 1; i < 4; i++)
-		pthread_create(&handles[i], NULL, work, &workers[i]);
-	for (int i = 1; i < 4; i++)
-		pthread_join(handles[i], NULL);
-	make_current(framework()->context);
-	for (int i = 0; i < 4; i++) {
-		pass = workers[i].pass && pass;
-		waffle_context_destroy(workers[i].context);
-		waffle_window_destroy(workers[i].window);
-	}
-	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+	return kb_run_in_threads(work);
 }
 
 const struct piglit_subtest kbuffer_subtests[] = {

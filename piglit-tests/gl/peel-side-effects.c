@@ -16,11 +16,109 @@
 #define K 3
 #define NUM 20
 
-static struct peel
-make(void)
+/** What a shader counts its invocations in, for each pixel or in one number. */
+struct counter {
+	const char *extension;
+	GLenum target;
+	int numbers;
+	const char *declaration, *statement;
+	/** It is there in the second pass, which has a bound. */
+	bool second_pass;
+};
+
+#define IMAGE "GL_ARB_shader_image_load_store", GL_TEXTURE_2D, W * H, \
+	"layout(r32ui) uniform uimage2D counts;\n"
+#define ADD_TO_IMAGE "imageAtomicAdd(counts, ivec2(gl_FragCoord.xy), 1u);"
+
+static const struct counter image_atomic = { IMAGE, ADD_TO_IMAGE };
+static const struct counter image_store = { IMAGE,
+	"ivec2 at = ivec2(gl_FragCoord.xy);\n"
+	"imageStore(counts, at, imageLoad(counts, at) + 1u);"
+};
+static const struct counter second_pass = { IMAGE, ADD_TO_IMAGE, true };
+static const struct counter storage_buffer = {
+	"GL_ARB_shader_storage_buffer_object", GL_SHADER_STORAGE_BUFFER, W * H,
+	"layout(std430) buffer Counts { uint counts[]; };\n",
+	"atomicAdd(counts[int(gl_FragCoord.y) * 70 + int(gl_FragCoord.x)], "
+	"1u);"
+};
+static const struct counter atomic_counter = {
+	"GL_ARB_shader_atomic_counters", GL_ATOMIC_COUNTER_BUFFER, 1,
+	"layout(binding = 0, offset = 0) uniform atomic_uint n;\n",
+	"atomicCounterIncrement(n);"
+};
+
+/** Make it, zero, and use a shader that counts. */
+static GLuint
+start(struct peel *p, const struct counter *c)
 {
-	return peel_create(&(struct peel_shape) {
-		K, W, H, 0, GL_DEPTH_COMPONENT32F, { GL_R32UI } });
+	GLuint *zeros = calloc(c->numbers, sizeof(GLuint)), name;
+	char *declarations;
+
+	if (c->target == GL_TEXTURE_2D) {
+		name = kb_new_texture();
+		glBindTexture(GL_TEXTURE_2D, name);
+		glTexImage2D(GL_TEXTURE_2D, 0, GL_R32UI, W, H, 0,
+			     GL_RED_INTEGER, GL_UNSIGNED_INT, zeros);
+		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER,
+				GL_NEAREST);
+		glBindImageTexture(0, name, 0, GL_FALSE, 0, GL_READ_WRITE,
+				   GL_R32UI);
+	} else {
+		glGenBuffers(1, &name);
+		glBindBuffer(c->target, name);
+		glBufferData(c->target, c->numbers * sizeof(GLuint), zeros,
+			     GL_DYNAMIC_READ);
+		glBindBufferBase(c->target, 0, name);
+	}
+	if (asprintf(&declarations, "#extension %s: require\n%s", c->extension,
+		     c->declaration) < 0)
+		abort();
+	peel_use_program(p, declarations, c->statement);
+	free(declarations);
+	free(zeros);
+	return name;
+}
+
+static GLuint *
+read_and_delete(const struct counter *c, GLuint name)
+{
+	GLuint *counts = malloc(c->numbers * sizeof(GLuint));
+
+	glMemoryBarrier(GL_ALL_BARRIER_BITS);
+	if (c->target == GL_TEXTURE_2D) {
+		glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER,
+			      GL_UNSIGNED_INT, counts);
+	} else {
+		glGetBufferSubData(c->target, 0, c->numbers * sizeof(GLuint),
+				   counts);
+		glDeleteBuffers(1, &name);
+	}
+	return counts;
+}
+
+/** Each pixel was counted as often as it was drawn to. */
+static bool
+check_counts(const struct counter *c, const GLuint *counts,
+	     const struct peel_quad *quads)
+{
+	GLuint *expected = calloc(c->numbers, sizeof(GLuint));
+	bool pass = true;
+
+	for (int i = 0; i < W * H; i++) {
+		for (int j = 0; j < NUM; j++)
+			expected[c->numbers == 1 ? 0 : i] +=
+				i % W >= quads[j].x0 && i % W < quads[j].x1 &&
+				i / W >= quads[j].y0 && i / W < quads[j].y1;
+	}
+	for (int i = 0; i < c->numbers && pass; i++) {
+		pass = counts[i] == expected[i];
+		if (!pass)
+			printf("%u invocations, not %u, at %d of %d\n",
+			       counts[i], expected[i], i, c->numbers);
+	}
+	free(expected);
+	return pass;
 }
 
 /** Front to back: all but the first K are refused. */
@@ -35,172 +133,39 @@ draw_and_check(struct peel *p, struct peel_quad *quads)
 	return peel_check_ranks(p, quads, NUM) && peel_check(p);
 }
 
-/** How often each pixel was drawn to. */
-static bool
-check_counts(const GLuint *counts, const struct peel_quad *quads)
-{
-	for (int i = 0; i < W * H; i++) {
-		const int x = i % W, y = i / W;
-		int expected = 0;
-
-		for (int j = 0; j < NUM; j++)
-			expected += x >= quads[j].x0 && x < quads[j].x1 &&
-				y >= quads[j].y0 && y < quads[j].y1;
-		if (counts[i] != expected) {
-			printf("the shader ran %u times at (%d, %d), not %d\n",
-			       counts[i], x, y, expected);
-			return false;
-		}
-	}
-	return true;
-}
-
 static enum piglit_result
-image(void *data)
+invocations(void *data)
 {
-	struct peel p;
+	const struct counter *c = data;
 	struct peel_quad quads[NUM];
-	GLuint tex, *counts = calloc(W * H, 4);
-	bool pass;
+	struct peel p;
+	GLuint name, *counts;
+	bool pass = true;
 
-	if (!piglit_is_extension_supported("GL_ARB_shader_image_load_store")) {
-		printf("no images here\n");
-		free(counts);
+	if (!piglit_is_extension_supported(c->extension)) {
+		printf("no %s here\n", c->extension);
 		return PIGLIT_SKIP;
 	}
-	p = make();
-	tex = kb_new_texture();
-	glBindTexture(GL_TEXTURE_2D, tex);
-	glTexImage2D(GL_TEXTURE_2D, 0, GL_R32UI, W, H, 0, GL_RED_INTEGER,
-		     GL_UNSIGNED_INT, counts);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-	glBindImageTexture(0, tex, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-	peel_use_program(&p,
-		"#extension GL_ARB_shader_image_load_store: require\n"
-		"layout(r32ui) uniform uimage2D counts;\n",
-		data ? data :
-		"imageAtomicAdd(counts, ivec2(gl_FragCoord.xy), 1u);");
-	pass = draw_and_check(&p, quads);
-	glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-	glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
-		      counts);
-	pass = check_counts(counts, quads) && pass;
-	free(counts);
-	return peel_end(&p, pass);
-}
-
-static enum piglit_result
-storage_buffer(void *data)
-{
-	struct peel p;
-	struct peel_quad quads[NUM];
-	GLuint buffer, *counts = calloc(W * H, 4);
-	bool pass;
-
-	if (!piglit_is_extension_supported(
-		    "GL_ARB_shader_storage_buffer_object")) {
-		printf("no storage buffers here\n");
-		free(counts);
-		return PIGLIT_SKIP;
+	p = peel_create(&(struct peel_shape) {
+		K, W, H, 0, GL_DEPTH_COMPONENT32F, { GL_R32UI } });
+	if (c->second_pass) {
+		pass = draw_and_check(&p, quads);
+		peel_next(&p);
 	}
-	p = make();
-	glGenBuffers(1, &buffer);
-	glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-	glBufferData(GL_SHADER_STORAGE_BUFFER, W * H * 4, counts,
-		     GL_DYNAMIC_READ);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer);
-	peel_use_program(&p,
-		"#extension GL_ARB_shader_storage_buffer_object: require\n"
-		"layout(std430) buffer Counts { uint counts[]; };\n",
-		"atomicAdd(counts[int(gl_FragCoord.y) * 70 + "
-		"int(gl_FragCoord.x)], 1u);");
-	pass = draw_and_check(&p, quads);
-	glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-	glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, W * H * 4, counts);
-	pass = check_counts(counts, quads) && pass;
-	glDeleteBuffers(1, &buffer);
-	free(counts);
-	return peel_end(&p, pass);
-}
-
-static enum piglit_result
-atomic_counter(void *data)
-{
-	struct peel p;
-	struct peel_quad quads[NUM];
-	GLuint buffer, n = 0, expected = 0;
-	bool pass;
-
-	if (!piglit_is_extension_supported("GL_ARB_shader_atomic_counters")) {
-		printf("no atomic counters here\n");
-		return PIGLIT_SKIP;
-	}
-	p = make();
-	glGenBuffers(1, &buffer);
-	glBindBuffer(GL_ATOMIC_COUNTER_BUFFER, buffer);
-	glBufferData(GL_ATOMIC_COUNTER_BUFFER, 4, &n, GL_DYNAMIC_READ);
-	glBindBufferBase(GL_ATOMIC_COUNTER_BUFFER, 0, buffer);
-	peel_use_program(&p,
-		"#extension GL_ARB_shader_atomic_counters: require\n"
-		"layout(binding = 0, offset = 0) uniform atomic_uint n;\n",
-		"atomicCounterIncrement(n);");
-	pass = draw_and_check(&p, quads);
-	for (int i = 0; i < NUM; i++)
-		expected += (quads[i].x1 - quads[i].x0) *
-			(quads[i].y1 - quads[i].y0);
-	glGetBufferSubData(GL_ATOMIC_COUNTER_BUFFER, 0, 4, &n);
-	if (n != expected) {
-		printf("the shader ran %u times, not %u\n", n, expected);
-		pass = false;
-	}
-	glDeleteBuffers(1, &buffer);
-	return peel_end(&p, pass);
-}
-
-/** Refused by the bound: the second pass runs for all fragments, too. */
-static enum piglit_result
-second_pass(void *data)
-{
-	struct peel p;
-	struct peel_quad quads[NUM];
-	GLuint tex, *counts = calloc(W * H, 4);
-	bool pass;
-
-	if (!piglit_is_extension_supported("GL_ARB_shader_image_load_store")) {
-		printf("no images here\n");
-		free(counts);
-		return PIGLIT_SKIP;
-	}
-	p = make();
-	pass = draw_and_check(&p, quads);
-	peel_next(&p);
-	tex = kb_new_texture();
-	glBindTexture(GL_TEXTURE_2D, tex);
-	glTexImage2D(GL_TEXTURE_2D, 0, GL_R32UI, W, H, 0, GL_RED_INTEGER,
-		     GL_UNSIGNED_INT, counts);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-	glBindImageTexture(0, tex, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-	peel_use_program(&p,
-		"#extension GL_ARB_shader_image_load_store: require\n"
-		"layout(r32ui) uniform uimage2D counts;\n",
-		"imageAtomicAdd(counts, ivec2(gl_FragCoord.xy), 1u);");
+	name = start(&p, c);
 	pass = draw_and_check(&p, quads) && pass;
-	glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-	glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
-		      counts);
-	pass = check_counts(counts, quads) && pass;
+	counts = read_and_delete(c, name);
+	pass = check_counts(c, counts, quads) && pass;
 	free(counts);
 	return peel_end(&p, pass);
 }
 
 const struct piglit_subtest kbuffer_subtests[] = {
-	KB_SUBTEST("image-atomic", image, NULL),
-	KB_SUBTEST("image-store", image,
-		   "ivec2 at = ivec2(gl_FragCoord.xy);\n"
-		   "imageStore(counts, at, imageLoad(counts, at) + 1u);"),
-	KB_SUBTEST("storage-buffer", storage_buffer, NULL),
-	KB_SUBTEST("atomic-counter", atomic_counter, NULL),
-	KB_SUBTEST("second-pass", second_pass, NULL),
+	KB_SUBTEST("image-atomic", invocations, &image_atomic),
+	KB_SUBTEST("image-store", invocations, &image_store),
+	KB_SUBTEST("storage-buffer", invocations, &storage_buffer),
+	KB_SUBTEST("atomic-counter", invocations, &atomic_counter),
+	KB_SUBTEST("second-pass", invocations, &second_pass),
 	KB_SUBTEST_END
 };
 
