@@ -177,7 +177,7 @@ kb_is_softpipe(void);
  * the state as it is.
  */
 #define KB_COMMAND_SIZE 8
-#define KB_NUM_COMMANDS 7
+#define KB_NUM_COMMANDS 13
 
 struct kb_command { const char *name; void (*draw)(void); bool is_pixels; };
 

@@ -5,8 +5,9 @@
 
 /**
  * \file peel-pixels.c
- * The fragments of DrawPixels, Bitmap and CopyPixels are inserted by rank, at
- * the depth of the raster position.
+ * The fragments of DrawPixels, Bitmap and CopyPixels of colors and depths are
+ * inserted by rank, colors at the depth of the raster position.  Stencil
+ * indices, and depths and stencil indices together, are written to layer 0.
  */
 
 #include "peel-common.h"
@@ -216,13 +217,123 @@ draw_depths(void *data)
 	return peel_end(&p, peel_check(&p));
 }
 
+static enum piglit_result
+copy_depths(void *data)
+{
+	struct peel p = make();
+	const GLubyte color[4] = { 30, 60, 90, 120 };
+	struct kb source;
+	float depths[IH * IW];
+	GLuint tex;
+
+	peel_seed(6);
+	draw_quads(&p, 0);
+	for (int i = 0; i < IH * IW; i++)
+		depths[i] = (1 + peel_random(14)) / 16.;
+	source = kb_create(GL_RGBA8, 1, 0, IW, IH);
+	tex = kb_new_texture();
+	glBindTexture(GL_TEXTURE_2D, tex);
+	glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, IW, IH, 0,
+		     GL_DEPTH_COMPONENT, GL_FLOAT, depths);
+	glBindTexture(GL_TEXTURE_2D, 0);
+	glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, tex, 0);
+	glBindFramebuffer(GL_FRAMEBUFFER, p.fbo);
+	glBindFramebuffer(GL_READ_FRAMEBUFFER, source.fbo);
+	glViewport(0, 0, W, H);
+	glColor4ubv(color);
+	glWindowPos3f(5, 6, .5);
+	glCopyPixels(0, 0, IW, IH, GL_DEPTH);
+	for (int j = 0; j < IH * IW; j++)
+		insert(&p, 5 + j % IW, 6 + j / IW, depths[j], color);
+	glBindFramebuffer(GL_FRAMEBUFFER, p.fbo);
+	return peel_end(&p, peel_check(&p));
+}
+
+/** Packed depths and stencil indices of all layers. */
+static uint32_t *
+read_packed(const struct peel *p)
+{
+	uint32_t *packed = malloc(K * W * H * 4);
+
+	glBindTexture(GL_TEXTURE_2D_ARRAY, p->depth_tex);
+	glGetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_STENCIL,
+		      GL_UNSIGNED_INT_24_8, packed);
+	glBindTexture(GL_TEXTURE_2D_ARRAY, 0);
+	return packed;
+}
+
+/**
+ * With the format of DrawPixels: of layer 0 the stencil indices, or they and
+ * the depths, are those of the image, and all else is as it was.  Depths go
+ * through single precision, whose 24 bits give them two roundings of half a
+ * unit.
+ */
+static enum piglit_result
+draw_stencil(void *data)
+{
+	const GLenum format = (GLenum)(intptr_t)data;
+	const bool depths = format == GL_DEPTH_STENCIL;
+	struct peel p = peel_create(&(struct peel_shape) {
+		K, W, H, 0, GL_DEPTH24_STENCIL8, { GL_RGBA8 } });
+	uint32_t image[IH * IW], *before, *after, *colors[2];
+	GLubyte indices[IH * IW];
+	bool pass = true;
+
+	peel_seed(7);
+	glClearStencil(9);
+	glClear(GL_STENCIL_BUFFER_BIT);
+	draw_quads(&p, 0);
+	before = read_packed(&p);
+	colors[0] = peel_read_color(&p, 0);
+	for (int i = 0; i < IH * IW; i++) {
+		indices[i] = peel_random(256);
+		image[i] = (uint32_t)peel_random(1 << 24) << 8 | indices[i];
+	}
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	glWindowPos3f(5, 6, .0625);
+	if (depths)
+		glDrawPixels(IW, IH, format, GL_UNSIGNED_INT_24_8, image);
+	else
+		glDrawPixels(IW, IH, format, GL_UNSIGNED_BYTE, indices);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	after = read_packed(&p);
+	for (int i = 0; i < K * W * H && pass; i++) {
+		const int x = i % W - 5, y = i / W % H - 6;
+		const bool in = i < W * H && x >= 0 && x < IW && y >= 0 &&
+			y < IH;
+		const uint32_t mask = !in ? 0 : depths ? ~0u : 0xff;
+		const uint32_t wanted = (before[i] & ~mask) |
+			((in ? image[y * IW + x] : 0) & mask);
+		const int off = (int)(after[i] >> 8) - (int)(wanted >> 8);
+
+		pass = (after[i] & 0xff) == (wanted & 0xff) &&
+			abs(off) <= (in && depths);
+		if (!pass)
+			printf("texel %d of layer %d: %08x, expected %08x\n",
+			       i % (W * H), i / (W * H), after[i], wanted);
+	}
+	colors[1] = peel_read_color(&p, 0);
+	if (memcmp(colors[0], colors[1], K * W * H * 16) != 0) {
+		printf("the colors have changed\n");
+		pass = false;
+	}
+	free(before);
+	free(after);
+	free(colors[0]);
+	free(colors[1]);
+	return peel_end(&p, peel_check_overflow(&p) && pass);
+}
+
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("draw-pixels", draw_pixels, NULL),
 	KB_SUBTEST("draw-pixels-zoomed", zoomed, NULL),
 	KB_SUBTEST("draw-depths", draw_depths, NULL),
+	KB_SUBTEST("draw-stencil", draw_stencil, GL_STENCIL_INDEX),
+	KB_SUBTEST("draw-depths-and-stencil", draw_stencil, GL_DEPTH_STENCIL),
 	KB_SUBTEST("bitmap", bitmap, NULL),
 	KB_SUBTEST("bitmaps-of-one-depth", bitmaps_of_one_depth, NULL),
 	KB_SUBTEST("copy-pixels", copy_pixels, NULL),
+	KB_SUBTEST("copy-depths", copy_depths, NULL),
 	KB_SUBTEST_END
 };
 
