@@ -31,8 +31,9 @@ check_renderer() {
 # command.
 start_xvfb() {
     local display
-    # Xvfb writes the number of the display that it has found free.
-    exec 8< <(exec Xvfb -displayfd 1 -screen 0 640x480x24 -nolisten tcp -noreset 2>"$1")
+    # Xvfb writes the number of the display that it has found free. If it were reset when its last
+    # client leaves, the next one could not connect.
+    exec 8< <(exec Xvfb -displayfd 1 -screen 0 1280x1024x24 -nolisten tcp -noreset 2>"$1")
     xvfb=$!
     trap 'kill "$xvfb" 2>/dev/null; cleanup' EXIT
     read -r -t 30 -u 8 display || die "Xvfb does not start" "See $1"
