@@ -2,7 +2,7 @@
 # Copyright © 2026 The mesa-kbuffer authors
 # SPDX-License-Identifier: MIT
 """Tests of judge.py: each wrong outcome of a run is a failure, and only that.
-Last line: `N passed, N failed, N skipped`."""
+Last line: `judge: N passed, N failed, N skipped`."""
 import json
 import os
 import sys
@@ -29,6 +29,9 @@ class Verdicts(unittest.TestCase):
                 self.assertEqual(
                     verdict([('a', 'pass'), (f'expect-{wanted}-x@y', status)]),
                     (1 + met, 1 - met, 0), f'{status} for {wanted}')
+            self.assertEqual(verdict([(f'expect-{wanted}-x@passes', 'pass')]), (1, 0, 0))
+            self.assertEqual(verdict([('a', 'pass'), (f'expect-{wanted}-x@passes', wanted)]),
+                             (1, 1, 0))
 
     def test_listed_skip_is_a_skip(self):
         self.assertEqual(verdict([('a', 'pass'), ('b@c', 'skip')], {'b@c': 'skip'}), (1, 0, 1))
@@ -56,16 +59,19 @@ class Verdicts(unittest.TestCase):
 
 
 class Files(unittest.TestCase):
-    def test_results_of_a_crash_after_subtests(self):
-        tests = {'spec@x@a': {'result': 'crash',
+    def test_results_of_an_end_after_subtests(self):
+        tests = {'spec@x@a': {'result': 'crash', 'returncode': -11,
                               'subtests': {'__type__': 'Subtests', 'b': 'pass'}},
-                 'spec@x@c': {'result': 'pass', 'subtests': {'d': 'pass'}},
-                 'spec@x@e': {'result': 'skip'}}
+                 'spec@x@c': {'result': 'pass', 'returncode': 0, 'subtests': {'d': 'pass'}},
+                 'spec@x@e': {'result': 'skip', 'returncode': 0},
+                 'spec@x@f': {'result': 'pass', 'returncode': 1, 'subtests': {'g': 'pass'}},
+                 'spec@x@h': {'result': 'fail', 'returncode': 1, 'subtests': {'i': 'fail'}}}
         with tempfile.TemporaryDirectory() as directory:
             with open(directory + '/results.json', 'w', encoding='utf-8') as file:
                 json.dump({'tests': tests}, file)
             self.assertEqual(sorted(judge.load_results(directory)),
-                             [('a', 'crash'), ('a@b', 'pass'), ('c@d', 'pass'), ('e', 'skip')])
+                             [('a', 'crash'), ('a@b', 'pass'), ('c@d', 'pass'), ('e', 'skip'),
+                              ('f', 'fail'), ('f@g', 'pass'), ('h@i', 'fail')])
 
     def test_lists_by_words_of_the_run(self):
         with tempfile.TemporaryDirectory() as directory:
@@ -81,5 +87,5 @@ class Files(unittest.TestCase):
 if __name__ == '__main__':
     outcome = unittest.main(argv=sys.argv[:1], exit=False, verbosity=0).result
     bad = len(outcome.failures) + len(outcome.errors)
-    print(f'{outcome.testsRun - bad} passed, {bad} failed, {len(outcome.skipped)} skipped')
+    print(f'judge: {outcome.testsRun - bad} passed, {bad} failed, {len(outcome.skipped)} skipped')
     sys.exit(bad > 0)

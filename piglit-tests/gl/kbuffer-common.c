@@ -201,23 +201,48 @@ piglit_init(int argc, char **argv)
 	glPushAttrib(GL_ALL_ATTRIB_BITS);
 }
 
+static bool
+is_selected(const struct piglit_subtest *subtest)
+{
+	const char **selected;
+	const size_t n = piglit_get_selected_tests(&selected);
+
+	for (size_t i = 0; i < n; i++) {
+		if (strcmp(selected[i], subtest->option) == 0)
+			return true;
+	}
+	return n == 0;
+}
+
+/** To piglit: those of which no result follows have not been run. */
+static void
+announce_subtests(void)
+{
+	const char *names[256];
+	int n = 0;
+
+	for (const struct piglit_subtest *t = kbuffer_subtests;
+	     !PIGLIT_SUBTEST_END(t); t++) {
+		if (is_selected(t) && n < ARRAY_SIZE(names) - 1)
+			names[n++] = t->name;
+	}
+	names[n] = NULL;
+	if (n > 0)
+		piglit_register_subtests(names);
+}
+
 enum piglit_result
 piglit_display(void)
 {
 	enum piglit_result result = PIGLIT_SKIP;
-	const char **selected;
-	size_t num_selected = piglit_get_selected_tests(&selected);
 
+	announce_subtests();
 	for (const struct piglit_subtest *t = kbuffer_subtests;
 	     !PIGLIT_SUBTEST_END(t); t++) {
 		enum piglit_result r;
-		bool wanted = num_selected == 0;
 
-		for (size_t i = 0; i < num_selected; i++)
-			wanted |= strcmp(selected[i], t->option) == 0;
-		if (!wanted)
+		if (!is_selected(t))
 			continue;
-
 		r = t->subtest_func(t->data);
 		if (!piglit_check_gl_error(GL_NO_ERROR))
 			r = PIGLIT_FAIL;
