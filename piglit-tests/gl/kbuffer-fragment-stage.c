@@ -165,6 +165,28 @@ glsl_small_output(void *data)
 	return check(&kb, 7, 8, 0, 0);
 }
 
+/** The second source color of dual-source blending is not an input. */
+static enum piglit_result
+dual_source(void *data)
+{
+	struct kb kb = make("ADD result.kbuffer[0], kbuffer[0], "
+			    "fragment.color[0];");
+
+	if (!piglit_is_extension_supported("GL_ARB_blend_func_extended")) {
+		printf("no dual-source blending here\n");
+		return PIGLIT_SKIP;
+	}
+	kb_use_glsl(vs, NULL, "#version 130\n"
+		    "#extension GL_ARB_explicit_attrib_location: require\n"
+		    "layout(location = 0, index = 0) out vec4 a;\n"
+		    "layout(location = 0, index = 1) out vec4 b;\n"
+		    "void main() { a = vec4(1, 2, 3, 4); b = vec4(50); }\n");
+	glEnable(GL_BLEND);
+	glBlendFunc(GL_SRC1_COLOR, GL_ONE_MINUS_SRC1_COLOR);
+	kb_draw(&kb);
+	return check(&kb, 1, 2, 3, 4);
+}
+
 /** Integer outputs keep nothing to read, but must do no harm. */
 static enum piglit_result
 no_output(void *data)
@@ -214,6 +236,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("glsl-frag-data", glsl_frag_data, NULL),
 	KB_SUBTEST("glsl-locations", glsl_locations, NULL),
 	KB_SUBTEST("glsl-small-output", glsl_small_output, NULL),
+	KB_SUBTEST("dual-source", dual_source, NULL),
 	KB_SUBTEST("no-output", no_output, NULL),
 	KB_SUBTEST("clamp-on", clamp, &on),
 	KB_SUBTEST("clamp-on-fixed", clamp, &on_fixed),

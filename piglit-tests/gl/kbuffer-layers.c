@@ -6,8 +6,8 @@
 /**
  * \file kbuffer-layers.c
  * In a layered framebuffer the layer that a primitive selects is ignored while
- * the k-buffer program is enabled: layers are entries.  Depth is tested in
- * layer 0.  The number of layers is the smallest of the attachments.
+ * the k-buffer program is enabled: layers are entries.  Depth and stencil
+ * are tested in layer 0.  The number of layers is the smallest of the attachments.
  */
 
 #include "kbuffer-common.h"
@@ -123,6 +123,42 @@ depth_in_layer_zero(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** And so is stencil: each draw counts up what passes only twice. */
+static enum piglit_result
+stencil_in_layer_zero(void *data)
+{
+	struct kb kb = kb_create(GL_RGBA32F, 1, 3, W, W);
+	GLuint tex = kb_new_texture(), packed[3 * W * W];
+	bool pass;
+
+	glBindTexture(GL_TEXTURE_2D_ARRAY, tex);
+	glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH24_STENCIL8, W, W, 3, 0,
+		     GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, NULL);
+	glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, tex,
+			     0);
+	glClearStencil(5);
+	glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+	glEnable(GL_STENCIL_TEST);
+	glStencilFunc(GL_GREATER, 7, ~0u);
+	glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
+	kb_program("ADD result.kbuffer[1], kbuffer[1], 1;");
+	use_shaders(1, 2, 3, 4);
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	for (int layer = 2; layer >= 0; layer--)
+		draw(&kb, layer, 0.5);
+	pass = kb_expect(&kb, 1, 0, 2, 2, 2, 2);
+
+	glGetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_STENCIL,
+		      GL_UNSIGNED_INT_24_8, packed);
+	for (int i = 0; i < W * W * 3 && pass; i++) {
+		pass = (packed[i] & 0xff) == (i < W * W ? 7 : 5);
+		if (!pass)
+			printf("stencil of texel %d is %d\n", i,
+			       packed[i] & 0xff);
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 /** Attachments of 4 and 2 layers: 2 x 2 entries, no more. */
 static enum piglit_result
 smallest_number_of_layers(void *data)
@@ -207,6 +243,7 @@ level(void *data)
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("layer-ignored", layer_ignored, NULL),
 	KB_SUBTEST("depth-in-layer-zero", depth_in_layer_zero, NULL),
+	KB_SUBTEST("stencil-in-layer-zero", stencil_in_layer_zero, NULL),
 	KB_SUBTEST("smallest-number-of-layers", smallest_number_of_layers,
 		   NULL),
 	KB_SUBTEST("single-layer", single_layer, NULL),

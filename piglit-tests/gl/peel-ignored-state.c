@@ -77,6 +77,9 @@ dual_source(void *data)
 {
 	struct peel p = make(GL_RGBA8);
 
+	/* The second color is of no output that is peeled. */
+	peel_use_program(&p, "layout(location = 0, index = 1) out vec4 second;\n",
+			 "second = vec4(.125, .25, .5, .75);\n");
 	glEnable(GL_BLEND);
 	glBlendFunc(GL_SRC1_COLOR, GL_ONE_MINUS_SRC1_COLOR);
 	return draw_and_check(&p);
