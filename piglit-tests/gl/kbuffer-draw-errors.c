@@ -160,11 +160,18 @@ static enum piglit_result
 no_draw_buffer(void *data)
 {
 	struct kb kb = make();
+	bool pass;
 
 	kb_program("MOV result.kbuffer[0], 7;");
 	glDrawBuffer(GL_NONE);
-	return check_refused(&kb) ?
-		PIGLIT_PASS : PIGLIT_FAIL;
+	pass = check_refused(&kb);
+	/* Nor of a program that names no entry. */
+	kb_program("TEMP t;\nMOV t, fragment.color;");
+	pass = check_refused(&kb) && pass;
+	glDrawBuffer(GL_COLOR_ATTACHMENT0);
+	kb_draw(&kb);
+	pass = kb_expect(&kb, 0, 0, 1, 2, 3, 4) && pass;
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
 /** A framebuffer without any attachment, made complete by its parameters. */
@@ -215,10 +222,20 @@ incomplete(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** With a shader that could draw to it. */
 static enum piglit_result
 integer(void *data)
 {
+	static const char vs[] = "#version 130\n"
+		"void main() { gl_Position = gl_Vertex; }\n";
+	static const char fs[] = "#version 130\n"
+		"#extension GL_ARB_explicit_attrib_location: require\n"
+		"layout(location = 0) out vec4 a;\n"
+		"layout(location = 1) out %s b;\n"
+		"void main() { a = vec4(1, 0, 1, 0); b = %s(5); }\n";
 	const GLenum format = (GLenum)(intptr_t)data;
+	const char *type = format == GL_RGBA32I ? "ivec4" : "uvec4";
+	char source[sizeof(fs) + 10];
 	struct kb kb = make();
 	static const int fill[4] = { 9, 9, 9, 9 };
 	int got[8 * 8 * 4];
@@ -236,12 +253,20 @@ integer(void *data)
 				      GL_COLOR_ATTACHMENT1 });
 	glClearBufferiv(GL_COLOR, 1, fill);
 	/* The integer buffer is not named by the program, but is there. */
+	sprintf(source, fs, type, type);
+	kb_use_glsl(vs, NULL, source);
 	pass = check_refused(&kb);
 	glBindTexture(GL_TEXTURE_2D, tex);
 	glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA_INTEGER, GL_INT, got);
 	for (int i = 0; i < 8 * 8; i++)
 		pass = got[4 * i] == 9 && pass;
+	pass = check_disabled_draws(&kb) && pass;
+	glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA_INTEGER, GL_INT, got);
+	for (int i = 0; i < 8 * 8; i++)
+		pass = got[4 * i] == 5 && pass;
+	glUseProgram(0);
 	glDrawBuffer(GL_COLOR_ATTACHMENT0);
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	kb_draw(&kb);
 	pass = kb_expect(&kb, 0, 0, 7, 7, 7, 7) && pass;
 	glDeleteTextures(1, &tex);

@@ -92,9 +92,12 @@ sum(const struct format *f)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** An integer of a shader can be drawn there, but not by a k-buffer program. */
 static enum piglit_result
 refused(const struct format *f)
 {
+	static const char vs[] = "#version 130\n"
+		"void main() { gl_Position = gl_Vertex; }\n";
 	const GLuint tex = kb_new_texture(), fbo = kb_new_framebuffer();
 	const GLint fill[4] = { 1, 2, 3, 1 };
 	GLint got[W * W][4];
@@ -111,6 +114,9 @@ refused(const struct format *f)
 		glClearBufferuiv(GL_COLOR, 0, (const GLuint *)fill);
 	glViewport(0, 0, W, W);
 	kb_program("ADD result.kbuffer[0], kbuffer[0], fragment.color;");
+	kb_use_glsl(vs, NULL, f->kind == INT ?
+		    "#version 130\nout ivec4 a;\nvoid main() { a = ivec4(0); }\n" :
+		    "#version 130\nout uvec4 a;\nvoid main() { a = uvec4(0u); }\n");
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	glRectf(-1, -1, 1, 1);
 	pass = piglit_check_gl_error(GL_INVALID_OPERATION);
