@@ -301,9 +301,9 @@ fits_framebuffer(const struct lp_peel_object *object,
 
 
 static bool
-can_insert(const struct llvmpipe_context *lp)
+can_insert(const struct llvmpipe_context *lp,
+           const struct pipe_framebuffer_state *fb)
 {
-   const struct pipe_framebuffer_state *fb = &lp->framebuffer;
    const struct pipe_peel_state *peel = &lp->kbuf.peel;
    const struct lp_peel_object *object = peel->object;
 
@@ -327,7 +327,7 @@ lp_peel_make_key(const struct llvmpipe_context *lp,
    memset(key->stencil, 0, sizeof key->stencil);
    key->zsbuf_format = PIPE_FORMAT_NONE;
 
-   if (!can_insert(lp))
+   if (!can_insert(lp, &lp->framebuffer))
       return;
 
    key->zsbuf_format = lp->framebuffer.zsbuf->format;
@@ -353,9 +353,12 @@ lp_peel_update_scene(struct lp_setup_context *setup)
    setup->dirty |= LP_SETUP_NEW_FS;
    setup->fs.current.peel = NULL;
 
-   /* A query can begin a scene before any state is bound. */
+   /*
+    * A query can begin a scene before any state is bound, and a clear can do
+    * so when the state is bound already that comes with the next framebuffer.
+    */
    if (!lp->blend || lp->blend->kbuffer_mode != PIPE_KBUFFER_PEEL ||
-       !can_insert(lp))
+       !can_insert(lp, fb))
       return true;
 
    struct lp_rast_peel *stored = lp_scene_alloc(setup->scene, sizeof *stored);

@@ -155,5 +155,5 @@ lp_peel_rasterize_bin(struct lp_rasterizer_task *task,
          }
       }
    }
-   lp_peel_tile_flush(tile);
+   lp_peel_tile_end(tile);
 }

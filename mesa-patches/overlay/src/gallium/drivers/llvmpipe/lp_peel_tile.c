@@ -9,6 +9,7 @@
 #include "util/u_math.h"
 #include "util/u_memory.h"
 
+#include "lp_peel_parts.h"
 #include "lp_peel_pixels.h"
 #include "lp_rast_priv.h"
 #include "lp_scene.h"
@@ -57,15 +58,31 @@ tile_words(const struct lp_peel_tile *tile, unsigned block, unsigned layer,
 }
 
 
-/** The count of the group that a quad is in. */
+/** The counts of the groups. */
 static uint32_t *
-group_count(const struct lp_peel_tile *tile, unsigned block, unsigned sample,
-            unsigned quad)
+sample_counts(const struct lp_peel_tile *tile, unsigned block, unsigned sample)
 {
-   const unsigned group = quad / lp_peel_group_quads();
-
    return &tile->counts[(block * tile->peel->num_samples + sample) *
-                        LP_PEEL_GROUPS + group];
+                        LP_PEEL_GROUPS];
+}
+
+
+/** The same of what is in memory, see lp_peel_parts.h; or NULL. */
+static uint16_t *
+part_counts(const struct lp_peel_tile *tile, unsigned block, unsigned sample)
+{
+   return tile->part ?
+      &tile->part[(block * tile->peel->num_samples + sample) *
+                  LP_PEEL_GROUPS] : NULL;
+}
+
+
+/** The count of the group that a quad is in. */
+static uint32_t
+quad_count(const struct lp_peel_tile *tile, unsigned block, unsigned sample,
+           unsigned quad)
+{
+   return sample_counts(tile, block, sample)[quad / lp_peel_group_quads()];
 }
 
 
@@ -169,26 +186,63 @@ clear_layer(const struct lp_peel_tile *tile, uint32_t *words)
 }
 
 
+/**
+ * The last layer of a block that any group has of its own, if that is known
+ * of what is in memory; -1 if not.
+ */
+static int
+known_count(const struct lp_peel_tile *tile, unsigned block, unsigned sample)
+{
+   const uint16_t *counts = part_counts(tile, block, sample);
+   int last = -1;
+
+   for (unsigned g = 0; counts && g < LP_PEEL_GROUPS; g++) {
+      if (counts[g] == LP_PEEL_UNKNOWN_COUNT)
+         return -1;
+      last = MAX2(last, counts[g]);
+   }
+   return last;
+}
+
+
+/** All layers of a sample, and which of them there are. */
 static void
-load_block(struct lp_peel_tile *tile, uint32_t block)
+load_sample(struct lp_peel_tile *tile, unsigned block, unsigned sample)
 {
    const struct lp_rast_peel *peel = tile->peel;
    const size_t layer_size = peel->num_words * LP_PEEL_WORD_SIZE;
+   unsigned count = 0;
 
-   for (unsigned s = 0; s < peel->num_samples; s++) {
-      unsigned count = 0;
+   for (unsigned layer = 0; layer < peel->num_layers; layer++) {
+      uint32_t *words = tile_words(tile, block, layer, sample);
 
-      for (unsigned layer = 0; layer < peel->num_layers; layer++) {
-         uint32_t *words = tile_words(tile, block, layer, s);
+      if (clear_layer(tile, words))
+         break;
+      load_layer(tile, words, block, layer, sample);
+      if (layer && memcmp(words, (uint8_t *)words - layer_size, layer_size))
+         count = layer;
+   }
+   for (unsigned g = 0; g < LP_PEEL_GROUPS; g++)
+      sample_counts(tile, block, sample)[g] = count;
+}
 
-         if (clear_layer(tile, words))
-            break;
-         load_layer(tile, words, block, layer, s);
-         if (layer && memcmp(words, (uint8_t *)words - layer_size, layer_size))
-            count = layer;
+
+static void
+load_block(struct lp_peel_tile *tile, uint32_t block)
+{
+   for (unsigned s = 0; s < tile->peel->num_samples; s++) {
+      const int count = known_count(tile, block, s);
+
+      for (int layer = 0; layer <= count; layer++)
+         load_layer(tile, tile_words(tile, block, layer, s), block, layer, s);
+      if (count < 0) {
+         load_sample(tile, block, s);
+      } else {
+         for (unsigned g = 0; g < LP_PEEL_GROUPS; g++) {
+            sample_counts(tile, block, s)[g] =
+               part_counts(tile, block, s)[g];
+         }
       }
-      for (unsigned q = 0; q < 4; q++)
-         *group_count(tile, block, s, q) = count;
    }
    if (!tile->valid[block])
       tile->num_valid++;
@@ -206,7 +260,6 @@ load_last(struct lp_peel_tile *tile, uint32_t block)
 {
    const struct lp_rast_peel *peel = tile->peel;
    const struct lp_rasterizer_task *task = tile->task;
-   const unsigned last = peel->num_layers - 1;
 
    if (tile->cleared_depth || tile->cleared_colors) {
       load_block(tile, block);
@@ -214,11 +267,14 @@ load_last(struct lp_peel_tile *tile, uint32_t block)
    }
 
    for (unsigned s = 0; s < peel->num_samples; s++) {
+      const int count = known_count(tile, block, s);
+      const unsigned last = count < 0 ? peel->num_layers - 1 : count;
+
       load_depth(tile_words(tile, block, last, s),
                  depth_block(task, block, last, s),
                  task->scene->zsbuf.stride, &peel->depth);
-      for (unsigned q = 0; q < 4; q++)
-         *group_count(tile, block, s, q) = last;
+      for (unsigned g = 0; g < LP_PEEL_GROUPS; g++)
+         sample_counts(tile, block, s)[g] = last;
    }
    tile->num_valid++;
    tile->valid[block] = LP_PEEL_LAST;
@@ -278,6 +334,7 @@ struct stored_block
 {
    unsigned block;
    unsigned counts[4];      /**< of each quad: the last layer there is */
+   unsigned last;           /**< layer that is to be stored */
    const uint32_t *quads[4];
 };
 
@@ -331,7 +388,8 @@ static void
 store_row(const struct lp_peel_tile *tile, unsigned row, unsigned sample)
 {
    struct stored_block blocks[TILE_SIZE / 4];
-   unsigned num_blocks = 0, most = 0;
+   const bool cleared = tile->cleared_depth || tile->cleared_colors;
+   unsigned num_blocks = 0;
 
    for (unsigned x = 0; x < TILE_SIZE / 4; x++) {
       struct stored_block *b = &blocks[num_blocks];
@@ -340,19 +398,26 @@ store_row(const struct lp_peel_tile *tile, unsigned row, unsigned sample)
       if (!(tile->changed[b->block] & LP_PEEL_CHANGED))
          continue;
 
+      /* Layers that are not there are in memory already, if they came from it. */
+      b->last = cleared ? tile->last_layer : 0;
       for (unsigned q = 0; q < 4; q++) {
-         b->counts[q] = *group_count(tile, b->block, sample, q);
+         b->counts[q] = quad_count(tile, b->block, sample, q);
          b->quads[q] = tile_words(tile, b->block, 0, sample) + 4 * q;
-         most = MAX2(most, b->counts[q]);
+         b->last = MAX2(b->last, b->counts[q]);
       }
       num_blocks++;
    }
 
-   /* Layers that are not there are in memory already, if they came from it. */
-   if (tile->cleared_depth || tile->cleared_colors)
-      most = tile->peel->num_layers - 1;
-   for (unsigned layer = 0; num_blocks && layer <= most; layer++)
+   for (unsigned layer = 0; num_blocks; layer++) {
+      unsigned num_left = 0;
+
       store_layer(tile, blocks, num_blocks, layer, sample);
+      for (unsigned b = 0; b < num_blocks; b++) {
+         if (layer < blocks[b].last)
+            blocks[num_left++] = blocks[b];
+      }
+      num_blocks = num_left;
+   }
 }
 
 
@@ -383,18 +448,61 @@ store_blocks(struct lp_peel_tile *tile)
 }
 
 
+/** Something else may write to the buffers: the counts hold no longer. */
+static void
+forget_part(struct lp_peel_tile *tile)
+{
+   if (tile->part)
+      memset(tile->part, 0xff, tile->part_size);
+}
+
+
+static void
+remember_part(struct lp_peel_tile *tile)
+{
+   const unsigned num_counts = tile->peel->num_samples * LP_PEEL_GROUPS;
+
+   for (unsigned block = 0; block < LP_PEEL_TILE_BLOCKS; block++) {
+      if (tile->valid[block] != LP_PEEL_ALL)
+         continue;
+      for (unsigned i = 0; i < num_counts; i++) {
+         part_counts(tile, block, 0)[i] =
+            sample_counts(tile, block, 0)[i];
+      }
+   }
+}
+
+
+/** Whether all of each layer is to be cleared. */
+static bool
+is_cleared(const struct lp_peel_tile *tile)
+{
+   const struct pipe_framebuffer_state *fb = &tile->task->scene->fb;
+
+   for (unsigned i = 0; i < fb->nr_cbufs; i++) {
+      if (fb->cbufs[i] && !(tile->cleared_colors & (1 << i)))
+         return false;
+   }
+   return tile->cleared_depth;
+}
+
+
 void
-lp_peel_tile_flush(struct lp_peel_tile *tile)
+lp_peel_tile_end(struct lp_peel_tile *tile)
 {
    struct lp_rasterizer_task *task = tile->task;
 
    if (tile->num_valid) {
       store_blocks(tile);
+      if (tile->part)
+         remember_part(tile);
       memset(tile->valid, 0, sizeof tile->valid);
       memset(tile->changed, 0, sizeof tile->changed);
       tile->farthest = INT32_MAX;
       tile->num_valid = 0;
    } else {
+      if (tile->part && is_cleared(tile))
+         memset(tile->part, 0, tile->part_size);
       u_foreach_bit(i, tile->cleared_colors)
          tile->dispatch[LP_RAST_OP_CLEAR_COLOR](task, tile->color_clears[i]);
       if (tile->cleared_depth)
@@ -411,11 +519,21 @@ lp_peel_tile_flush(struct lp_peel_tile *tile)
 
 
 void
+lp_peel_tile_flush(struct lp_peel_tile *tile)
+{
+   lp_peel_tile_end(tile);
+   forget_part(tile);
+}
+
+
+void
 lp_peel_tile_clear(struct lp_peel_tile *tile, unsigned cmd,
                    const union lp_rast_cmd_arg arg)
 {
    struct lp_rasterizer_task *task = tile->task;
    const struct lp_rast_peel *peel = tile->peel;
+
+   forget_part(tile);
 
    /* The rest of a block at the edge may belong to the texture. */
    if (tile->num_valid || task->width % 4 || task->height % 4) {
@@ -479,6 +597,7 @@ lp_peel_tile_begin(struct lp_rasterizer_task *task,
                    const lp_rast_cmd_func *dispatch)
 {
    struct lp_peel_tile *tile = task->thread_data.peel_tile;
+   struct lp_peel_parts *parts = task->scene->peel_parts;
 
    if (!tile) {
       tile = CALLOC_STRUCT(lp_peel_tile);
@@ -491,6 +610,11 @@ lp_peel_tile_begin(struct lp_rasterizer_task *task,
    }
    tile->dispatch = dispatch;
    tile->farthest = INT32_MAX;
+   tile->part = NULL;
+   if (parts) {
+      tile->part = lp_peel_parts_tile(parts, task->x, task->y);
+      tile->part_size = parts->tile_counts * sizeof *tile->part;
+   }
    return tile;
 }
 
@@ -542,7 +666,7 @@ block_farthest(struct lp_peel_tile *tile, unsigned block)
    for (unsigned s = 0; s < tile->peel->num_samples; s++) {
       for (unsigned q = 0; q < 4; q++) {
          const int32_t *depths =
-            (int32_t *)tile_words(tile, block, *group_count(tile, block, s, q),
+            (int32_t *)tile_words(tile, block, quad_count(tile, block, s, q),
                                   s) + 4 * q;
 
          for (unsigned i = 0; i < 4; i++)

@@ -83,6 +83,8 @@ struct lp_peel_tile
    int32_t block_farthest[LP_PEEL_TILE_BLOCKS];
    int32_t farthest;        /**< see lp_peel_tile_farthest() */
    unsigned farthest_age;
+   uint16_t *part;          /**< the counts of what is in memory, or NULL */
+   size_t part_size;        /**< in bytes */
 
    /* What is to be cleared before anything else. */
    uint32_t cleared_colors;      /**< a bit for each color buffer */
@@ -122,6 +124,10 @@ lp_peel_tile_clear(struct lp_peel_tile *tile, unsigned cmd,
 /** Give everything back: something else is about to use the buffers. */
 void
 lp_peel_tile_flush(struct lp_peel_tile *tile);
+
+/** The same at the end of a bin. */
+void
+lp_peel_tile_end(struct lp_peel_tile *tile);
 
 /**
  * Fragments at this depth or farther can not be inserted anywhere in the tile;
