@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Command lines: help, bad options, no half done work after them.
 
-commands=(bench build check-fresh demo fetch-data patch run test)
+commands=(bench build check-fresh demo fetch-data fuzz patch run test)
 
 test_every_command_has_help() {
     local command
@@ -34,6 +34,15 @@ test_unknown_suites() {
     run 2 scripts/test --only none
     run 2 scripts/check-fresh woody
     prints bookworm
+}
+
+test_fuzz_takes_known_targets_and_drivers() {
+    run 2 scripts/fuzz textures
+    prints textures
+    run 2 scripts/fuzz draws --driver zink
+    run 2 scripts/fuzz draws --seconds soon
+    run 2 scripts/fuzz --print
+    absent build
 }
 
 test_patch_needs_an_action() {
