@@ -18,14 +18,18 @@ newest_llvm() {
 # the same depth, so trees of one clone and clones anywhere share results. The cache is the user's.
 export CCACHE_BASEDIR=$build CCACHE_NOHASHDIR=1
 
-# write_native_file [C CXX]: the compilers of what is configured from here on; GCC's, else
+# write_native_file [NAME COMMAND...]: the compilers of what is configured from here on: GCC through
+# ccache, else what the command makes of gcc and g++
 write_native_file() {
-    native=$build/native${1:+-$1}.ini
+    local name=${1:-} command
+    shift $(($# > 0))
+    printf -v command "'%s', " "${@:-ccache}"
+    native=$build/native${name:+-$name}.ini
     mkdir -p "$build"
     cat >"$native.new" <<END
 [binaries]
-c = ['ccache', '${1:-gcc}']
-cpp = ['ccache', '${2:-g++}']
+c = [${command}'gcc']
+cpp = [${command}'g++']
 python3 = '$python'
 llvm-config = '$(newest_llvm)'
 END
@@ -40,18 +44,43 @@ mesa_options=(-Dgallium-drivers=swrast -Dvulkan-drivers= -Dosmesa=true -Dglx=dri
 release_options=(--buildtype=release -Db_ndebug=true)
 debug_options=(--buildtype=debugoptimized -Db_ndebug=false)
 
-# Instrumented by Clang. The runtime comes with the program that loads the library (b_lundef), which
-# may be a fuzzer: its coverage is in the same build, and costs little where nobody asks for it.
-# vptr needs type information, which LLVM and what is derived from its classes are compiled without.
-instrumented=(--buildtype=plain -Doptimization=1 -Db_ndebug=false -Db_lundef=false)
-traceable='-g1 -fno-omit-frame-pointer'
-sanitize_options=("${instrumented[@]}" '-Db_sanitize=address,undefined')
-sanitize_args="$traceable -fno-sanitize=vptr"
-fuzz_args="$traceable -fsanitize=fuzzer-no-link -fno-sanitize=vptr"
-# Threads are the same whatever the window system.
-thread_options=("${instrumented[@]}" -Db_sanitize=thread "-Dc_args=$traceable"
-    "-Dcpp_args=$traceable" -Dglx=disabled -Degl=disabled -Dgbm=disabled -Dplatforms=
-    -Dglvnd=disabled -Dgles2=disabled)
+# A sanitized Mesa is the release but for the files that the project adds or changes: what a report
+# names is ours then, and what ccache has of the others counts. The runtime comes with the program
+# that loads the library (b_lundef), which may be a fuzzer.
+instrumented_options=("${release_options[@]}" -Db_lundef=false)
+traceable='-O1 -g1 -fno-omit-frame-pointer -Wno-unknown-warning-option'
+# Members of null pointers: Mesa's lists and references take their addresses; a use is a crash anyway.
+sanitizers='-fsanitize=address,undefined -fno-sanitize=vptr,null'
+
+# instrument NAME OPTIONS [FILE...]: what is configured from here on has our files, and these,
+# compiled by Clang with OPTIONS
+instrument() {
+    local name=$1 options=$2 list=$build/instrumented-$1.txt
+    shift 2
+    {
+        overlay_files
+        hook_files | xargs -r sed -n 's|^diff --git a/\(.*\) b/.*|\1|p'
+        printf '%s\n' src/mesa/program/{lex.yy,program_parse.tab}.c "$@"
+    } | LC_ALL=C sort -u >"$list"
+    write_native_file "$name" "$root/scripts/lib/instrumenting-compiler" "$list" \
+        "$traceable $options"
+}
+
+# build_sanitized_mesa, with the coverage that libFuzzer needs, which costs little elsewhere
+build_sanitized_mesa() {
+    instrument sanitize "$sanitizers -fsanitize=fuzzer-no-link"
+    build_mesa "sanitized Mesa" "$tree" "$tree/build-sanitize" "$build/sanitize-prefix" \
+        "${instrumented_options[@]}"
+}
+
+# All of llvmpipe, since ThreadSanitizer has to see how its threads wait for each other
+build_thread_mesa() {
+    local drivers
+    mapfile -t drivers < <(cd "$tree" && find -L src/gallium/drivers/llvmpipe -name '*.c')
+    instrument thread -fsanitize=thread "${drivers[@]}"
+    build_mesa "Mesa with ThreadSanitizer" "$tree" "$tree/build-thread" "$build/thread-prefix" \
+        "${instrumented_options[@]}"
+}
 
 # configure WHAT SOURCE BUILD_DIR OPTION...: only when the options are not those of the last time.
 # The stamp is written last, so a half-configured folder is made anew.
@@ -92,10 +121,12 @@ build_project() {
     build_project_in project prefix --buildtype=release
 }
 
-# The same against the sanitized Mesa, sanitized
+# The same against the sanitized Mesa, sanitized as a whole
 build_sanitized_project() {
-    build_project_in project-sanitize sanitize-prefix "${sanitize_options[@]}" \
-        "-Dcpp_args=$sanitize_args"
+    write_native_file project-sanitize "$root/scripts/lib/instrumenting-compiler" - \
+        "$traceable $sanitizers"
+    build_project_in project-sanitize sanitize-prefix --buildtype=plain \
+        -Db_sanitize=address,undefined -Db_lundef=false
 }
 
 build_project_in() { # NAME PREFIX_NAME OPTION...

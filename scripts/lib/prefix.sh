@@ -5,7 +5,10 @@
 # linked with the vendor-neutral libraries or with libOSMesa.
 use_prefix() {
     local prefix=$build/$1 option=''
-    case $1 in stock-prefix | debug-prefix) option=" --${1%-prefix}" ;; esac
+    case $1 in
+    stock-prefix | debug-prefix | sanitize-prefix) option=" --${1%-prefix}" ;;
+    thread-prefix) option=" --sanitize=thread" ;;
+    esac
     [ -f "$prefix/.complete" ] ||
         die "there is no built Mesa in build/$1" "Make it: scripts/build$option"
     prefix_libdir=$(dirname "$(echo "$prefix"/lib/*/libOSMesa.so)")
