@@ -19,7 +19,7 @@ use_prefix() {
 # another of waffle's platforms, is the one that is wanted.
 check_renderer() {
     local renderer
-    renderer=$(GALLIUM_DRIVER=$1 wflinfo -p "${2:-surfaceless_egl}" -a gl 2>&1 |
+    renderer=$(GALLIUM_DRIVER=$1 LD_PRELOAD=${sanitizer_runtime:-} wflinfo -p "${2:-surfaceless_egl}" -a gl 2>&1 |
         sed -n 's/^OpenGL renderer string: //p') || true
     case $renderer in
     "$1"*) ;;

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # Copyright © 2026 The mesa-kbuffer authors
 # SPDX-License-Identifier: MIT
-"""mkprofile.py SOURCE_DIR BUILD_DIR SHADER_RUNNER OUT.xml.gz
+"""mkprofile.py SOURCE_DIR BUILD_DIR SHADER_RUNNER OUT.xml.gz [LAUNCHER...]
 
 Writes a piglit profile of this folder: a test for each executable in
 BUILD_DIR/bin and for each SOURCE_DIR/shaders/*.shader_test, by absolute paths,
-so that any piglit's `run` can execute them."""
+so that any piglit's `run` can execute them; LAUNCHER goes in front of each."""
 import glob
 import gzip
 import os
@@ -23,9 +23,9 @@ def tests(source, build, runner):
 
 
 def main():
-    if len(sys.argv) != 5:
+    if len(sys.argv) < 5:
         sys.exit(__doc__)
-    source, build, runner, out = sys.argv[1:]
+    source, build, runner, out, *launcher = sys.argv[1:]
     found = list(tests(source, build, runner))
     root = et.Element('PiglitTestList', count=str(len(found)), name='kbuffer')
     for name, command in found:
@@ -33,7 +33,7 @@ def main():
             'kbuffer_program'
         test = et.SubElement(root, 'Test', type='gl',
                              name=f'spec@mesa_{extension}@{name}')
-        et.SubElement(test, 'option', name='command', value=repr(command))
+        et.SubElement(test, 'option', name='command', value=repr(launcher + command))
         # What may run beside others piglit starts with -fbo.
         et.SubElement(test, 'option', name='run_concurrent',
                       value=str(not name.endswith('-window')))

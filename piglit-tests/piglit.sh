@@ -69,14 +69,15 @@ build_piglit() {
 }
 
 # Our tests, in $piglit/tests, and their profile
-build_tests() { # PREFIX
-    local tests=$root/piglit-tests
+build_tests() { # PREFIX [PROFILE [LAUNCHER...]]
+    local tests=$root/piglit-tests prefix=$1 profile=${2:-kbuffer}
+    shift $(($# > 1 ? 2 : 1))
     logged "configuring the tests" piglit-tests-configure.log \
         cmake -S "$tests" -B "$piglit/tests" -G Ninja -DPIGLIT_SRC="$piglit/src" \
-        -DPIGLIT_BUILD="$piglit/build" -DKBUFFER_INCLUDE="$1/include" \
-        -DOSMESA="$(find "$1/" -name libOSMesa.so -print -quit)" \
+        -DPIGLIT_BUILD="$piglit/build" -DKBUFFER_INCLUDE="$prefix/include" \
+        -DOSMESA="$(find "$prefix/" -name libOSMesa.so -print -quit)" \
         -DCMAKE_C_COMPILER_LAUNCHER=ccache
     run_ninja "the tests" piglit-tests-build.log "$piglit/tests"
     "$python" "$tests/mkprofile.py" "$tests" "$piglit/tests" \
-        "$piglit/build/bin/shader_runner" "$piglit/tests/kbuffer.xml.gz"
+        "$piglit/build/bin/shader_runner" "$piglit/tests/$profile.xml.gz" "$@"
 }

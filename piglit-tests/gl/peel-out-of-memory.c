@@ -28,7 +28,13 @@ fails(void)
 	return true;
 }
 
-/* The C library's, called by those that take their place. */
+/* AddressSanitizer's, where it is there, or the C library's, called by those
+ * that take their place.
+ */
+extern void *__interceptor_malloc(size_t) __attribute__((weak));
+extern void *__interceptor_calloc(size_t, size_t) __attribute__((weak));
+extern void *__interceptor_realloc(void *, size_t) __attribute__((weak));
+extern void *__interceptor_memalign(size_t, size_t) __attribute__((weak));
 extern void *__libc_malloc(size_t);
 extern void *__libc_calloc(size_t, size_t);
 extern void *__libc_realloc(void *, size_t);
@@ -37,31 +43,44 @@ extern void *__libc_memalign(size_t, size_t);
 void *
 malloc(size_t size)
 {
-	return fails() ? NULL : __libc_malloc(size);
+	if (fails())
+		return NULL;
+	return __interceptor_malloc ? __interceptor_malloc(size) :
+		__libc_malloc(size);
 }
 
 void *
 calloc(size_t n, size_t size)
 {
-	return fails() ? NULL : __libc_calloc(n, size);
+	if (fails())
+		return NULL;
+	return __interceptor_calloc ? __interceptor_calloc(n, size) :
+		__libc_calloc(n, size);
 }
 
 void *
 realloc(void *old, size_t size)
 {
-	return fails() ? NULL : __libc_realloc(old, size);
+	if (fails())
+		return NULL;
+	return __interceptor_realloc ? __interceptor_realloc(old, size) :
+		__libc_realloc(old, size);
 }
 
 void *
 aligned_alloc(size_t alignment, size_t size)
 {
-	return fails() ? NULL : __libc_memalign(alignment, size);
+	if (fails())
+		return NULL;
+	return __interceptor_memalign ?
+		__interceptor_memalign(alignment, size) :
+		__libc_memalign(alignment, size);
 }
 
 int
 posix_memalign(void **result, size_t alignment, size_t size)
 {
-	void *memory = fails() ? NULL : __libc_memalign(alignment, size);
+	void *memory = aligned_alloc(alignment, size);
 
 	if (!memory)
 		return ENOMEM;
