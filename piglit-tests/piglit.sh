@@ -10,15 +10,8 @@ piglit=$build/piglit
 piglit_tarball=$build/download/piglit_$piglit_version.orig.tar.xz
 
 piglit_from_distribution() { # FOLDER
-    local uri hash
-    use_suite "$1" deb-src "$piglit_suite" || return 1
-    # A line reads: 'URI' FILE SIZE SHA256:HASH
-    read -r uri _ _ hash < <(
-        apt-get "${apt_options[@]}" source --print-uris -qq piglit 2>/dev/null |
-            awk -v name="$(basename "$piglit_tarball")" '$2 == name { gsub("\047", ""); print }'
-    ) || return 1
-    /usr/lib/apt/apt-helper "${apt_options[@]}" download-file "$uri" "$1/piglit.tar.xz" "$hash" \
-        >"$1/fetch.log" 2>&1
+    source_file "$1" "$piglit_suite" piglit "$(basename "$piglit_tarball")" &&
+        mv "$source_file" "$1/piglit.tar.xz"
 }
 
 # The tarball, verified, in build/download.

@@ -6,6 +6,7 @@ upstream=$root/mesa-patches/upstream.json
 mesa_version=$(json "$upstream" version)
 mesa_sha256=$(json "$upstream" sha256)
 mesa_tarball=$build/download/mesa-$mesa_version.tar.xz
+debian_suite=$(json "$upstream" debian_suite)
 meson_needed=1.4
 
 # The address of the machine's own Debian mirror, as apt itself understands its sources.
@@ -31,18 +32,37 @@ use_suite() {
     apt-get "${apt_options[@]}" -qq update >"$1/update.log" 2>&1
 }
 
-mesa_from_distribution() { # FOLDER
-    local suite uri file hash
-    suite=$(json "$upstream" debian_suite)
-    use_suite "$1" deb-src "$suite" || return 1
+# source_file FOLDER SUITE PACKAGE PATTERN: fetches the file of a source package of Debian whose name
+# is PATTERN (an expression), checks it against the suite's signed index, and sets source_file to it.
+source_file() {
+    local uri file hash
+    use_suite "$1" deb-src "$2" || return 1
     # A line reads: 'URI' FILE SIZE SHA256:HASH
     read -r uri file _ hash < <(
-        apt-get "${apt_options[@]}" source --print-uris -qq mesa 2>/dev/null |
-            awk -v name="mesa_$mesa_version.orig.tar.xz" '$2 == name { gsub("\047", ""); print }'
+        apt-get "${apt_options[@]}" source --print-uris -qq "$3" 2>/dev/null |
+            awk -v name="^$4\$" '$2 ~ name { gsub("\047", ""); print }'
     ) || return 1
-    note "from the source package of Debian $suite: $file"
-    /usr/lib/apt/apt-helper "${apt_options[@]}" download-file "$uri" "$1/mesa.tar.xz" "$hash" \
+    note "from the source package of Debian $2: $file"
+    source_file=$1/$file
+    /usr/lib/apt/apt-helper "${apt_options[@]}" download-file "$uri" "$source_file" "$hash" \
         >"$1/fetch.log" 2>&1
+}
+
+mesa_from_distribution() { # FOLDER
+    source_file "$1" "$debian_suite" mesa "mesa_${mesa_version}[.]orig[.]tar[.]xz" &&
+        mv "$source_file" "$1/mesa.tar.xz"
+}
+
+# Sets debian_patches to the archive, in build/download, of what Debian adds to this release.
+fetch_debian_patches() {
+    local folder
+    debian_patches=$(find "$(dirname "$mesa_tarball")" -name "mesa_$mesa_version-*.debian.tar.*" |
+        sort -V | tail -n 1)
+    [ -z "$debian_patches" ] || return 0
+    make_temporary folder
+    source_file "$folder" "$debian_suite" mesa "mesa_$mesa_version-[^_]*[.]debian[.]tar[.].*" || return 1
+    debian_patches=$(dirname "$mesa_tarball")/$(basename "$source_file")
+    mv "$source_file" "$debian_patches"
 }
 
 mesa_from_upstream() { # FOLDER
