@@ -163,7 +163,7 @@ fill_constants(struct st_context *st, const struct gl_program *prog,
  * from gl_texture_unit::_Current, which is what the fragment stage samples:
  * the two may sample different targets of one unit.
  */
-static void
+static bool
 fill_textures(struct st_context *st, const struct gl_program *prog,
               struct pipe_kbuffer_state *state)
 {
@@ -182,17 +182,19 @@ fill_textures(struct st_context *st, const struct gl_program *prog,
       const struct gl_sampler_object *sampler =
          tex_unit->Sampler ? tex_unit->Sampler : &tex->Sampler;
 
-      /* Out of memory otherwise. */
-      if (st_finalize_texture(ctx, st->pipe, tex, 0) && tex->pt) {
-         state->sampler_views[unit] =
-            st_get_texture_sampler_view_from_stobj(st, tex, sampler,
-                                                   false, false, false);
-      }
+      if (!st_finalize_texture(ctx, st->pipe, tex, 0) || !tex->pt)
+         return false;
+      state->sampler_views[unit] =
+         st_get_texture_sampler_view_from_stobj(st, tex, sampler,
+                                                false, false, false);
+      if (!state->sampler_views[unit])
+         return false;
 
       st_convert_sampler(st, tex, sampler, tex_unit->LodBiasQuantized,
                          &state->samplers[unit], ctx->Texture.CubeMapSeamless,
                          false, false);
    }
+   return true;
 }
 
 void
@@ -213,10 +215,16 @@ st_kbuffer_update(struct st_context *st)
    };
 
    fill_constants(st, prog, &state);
-   fill_textures(st, prog, &state);
 
-   st->pipe->set_kbuffer_state(st->pipe, &state);
-   reference_object(st, &st->kbuffer, object);
+   if (fill_textures(st, prog, &state) &&
+       st->pipe->set_kbuffer_state(st->pipe, &state)) {
+      reference_object(st, &st->kbuffer, object);
+   } else {
+      /* This draw changes nothing, the next one tries again. */
+      st_kbuffer_unbind(st);
+      ctx->NewDriverState |= ST_NEW_BLEND;
+      _mesa_error(ctx, GL_OUT_OF_MEMORY, "glDraw*");
+   }
 }
 
 void

@@ -12,6 +12,7 @@
 
 #include "main/context.h"
 #include "main/depth_peeling.h"
+#include "main/errors.h"
 #include "main/renderbuffer.h"
 
 #include "pipe/p_context.h"
@@ -232,9 +233,20 @@ st_peel_update(struct st_context *st)
       st_kbuffer_unbind(st);
    }
 
-   if (object || st->peel)
-      st->pipe->set_kbuffer_state(st->pipe, &state);
-   st->peel = object;
+   if (!object && !st->peel)
+      return false;
+
+   if (st->pipe->set_kbuffer_state(st->pipe, &state)) {
+      st->peel = object;
+   } else {
+      const struct pipe_kbuffer_state none = { 0 };
+
+      /* This draw changes nothing, the next one tries again. */
+      st->pipe->set_kbuffer_state(st->pipe, &none);
+      st->peel = NULL;
+      ctx->NewDriverState |= ST_NEW_BLEND;
+      _mesa_error(ctx, GL_OUT_OF_MEMORY, "glDraw*");
+   }
 
    return object != NULL;
 }

@@ -438,21 +438,21 @@ lp_build_kbuf_stage(struct gallivm_state *gallivm,
                     const struct lp_build_kbuf_params *params)
 {
    const struct lp_fragment_shader_variant_key *key = params->key;
-   struct kbuf_context *ctx;
+   struct kbuf_context context = {
+      .base = {
+         .load_kbuffer = load_entry,
+         .store_kbuffer = store_entry,
+         .exit_on_discard = true,
+      },
+      .gallivm = gallivm,
+      .params = params,
+   };
+   struct kbuf_context *ctx = &context;
    LLVMValueRef fpstate = NULL;
 
    assert(params->type.length == 4 || params->type.length == 8);
    if (!params->kbuf->program)
       return params->mask;
-
-   ctx = CALLOC_STRUCT(kbuf_context);
-   if (!ctx)
-      return params->mask;
-   ctx->base.load_kbuffer = load_entry;
-   ctx->base.store_kbuffer = store_entry;
-   ctx->base.exit_on_discard = true;
-   ctx->gallivm = gallivm;
-   ctx->params = params;
 
    bool denormals = false;
    for (unsigned i = 0; i < key->nr_cbufs; i++) {
@@ -482,6 +482,5 @@ lp_build_kbuf_stage(struct gallivm_state *gallivm,
    if (denormals)
       lp_build_fpstate_set(gallivm, fpstate);
 
-   FREE(ctx);
    return alive;
 }

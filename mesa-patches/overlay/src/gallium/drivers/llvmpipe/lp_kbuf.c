@@ -84,6 +84,19 @@ gather_program_info(struct lp_kbuf_program *program)
 }
 
 
+/** Now, where a lack of memory can still be told; draws rely on them. */
+static bool
+create_tiles(struct pipe_context *pipe)
+{
+   struct llvmpipe_screen *screen = llvmpipe_screen(pipe->screen);
+
+   mtx_lock(&screen->rast_mutex);
+   const bool created = lp_kbuf_tiles_create(screen->rast);
+   mtx_unlock(&screen->rast_mutex);
+   return created;
+}
+
+
 static void *
 llvmpipe_create_kbuffer_state(struct pipe_context *pipe,
                               const struct pipe_shader_state *templ)
@@ -92,8 +105,9 @@ llvmpipe_create_kbuffer_state(struct pipe_context *pipe,
    struct blob blob;
 
    assert(templ->type == PIPE_SHADER_IR_NIR);
-   if (!program) {
+   if (!program || !create_tiles(pipe)) {
       ralloc_free(templ->ir.nir);
+      FREE(program);
       return NULL;
    }
    pipe_reference_init(&program->reference, 1);
@@ -102,8 +116,13 @@ llvmpipe_create_kbuffer_state(struct pipe_context *pipe,
 
    blob_init(&blob);
    nir_serialize(&blob, program->nir, true);
+   const bool complete = !blob.out_of_memory;
    _mesa_sha1_compute(blob.data, blob.size, program->sha1);
    blob_finish(&blob);
+
+   /* The hash of a part would be that of other programs, too. */
+   if (!complete)
+      program_reference(&program, NULL);
 
    return program;
 }
@@ -118,7 +137,7 @@ llvmpipe_delete_kbuffer_state(struct pipe_context *pipe, void *state)
 }
 
 
-static void
+static bool
 llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
                            const struct pipe_kbuffer_state *state)
 {
@@ -156,9 +175,12 @@ llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
       kbuf->constants = mem_dup(state->constants, state->constants_size);
       if (kbuf->constants)
          kbuf->constants_size = state->constants_size;
+      else
+         program_reference(&kbuf->program, NULL);
    }
 
    lp->dirty |= LP_NEW_KBUFFER;
+   return (!state || kbuf->program == state->program) && lp_peel_reserve(lp);
 }
 
 
@@ -232,7 +254,6 @@ static bool
 use_tile(const struct llvmpipe_context *lp)
 {
    const struct pipe_framebuffer_state *fb = &lp->framebuffer;
-   struct llvmpipe_screen *screen = llvmpipe_screen(lp->pipe.screen);
 
    if (!debug_get_option_kbuf_tile() ||
        util_framebuffer_get_num_samples(fb) > 1 ||
@@ -243,11 +264,7 @@ use_tile(const struct llvmpipe_context *lp)
       if (fb->cbufs[i] && llvmpipe_resource_is_1d(fb->cbufs[i]->texture))
          return false;
    }
-
-   mtx_lock(&screen->rast_mutex);
-   const bool created = lp_kbuf_tiles_create(screen->rast);
-   mtx_unlock(&screen->rast_mutex);
-   return created;
+   return true;
 }
 
 

@@ -204,8 +204,7 @@ lp_kbuf_tile_flush(struct lp_kbuf_tile *tile)
          copy_entries(tile, block, tile->written, false);
    }
    memset(tile->valid, 0, sizeof tile->valid);
-   tile->written = 0;
-   tile->kbuf = NULL;
+   tile->written = tile->kbuf->written;
 }
 
 
@@ -221,7 +220,7 @@ lp_kbuf_tile_set_state(struct lp_rasterizer_task *task)
    if (tile->kbuf &&
        (!kbuf || kbuf->num_entries != tile->kbuf->num_entries ||
         kbuf->num_color_buffers != tile->kbuf->num_color_buffers))
-      lp_kbuf_tile_flush(tile);
+      lp_kbuf_tile_end(tile);
 
    if (kbuf) {
       tile->kbuf = kbuf;

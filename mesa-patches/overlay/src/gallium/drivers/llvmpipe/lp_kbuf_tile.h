@@ -68,16 +68,30 @@ lp_kbuf_tiles_create(struct lp_rasterizer *rast);
 void
 lp_kbuf_tiles_destroy(struct lp_rasterizer *rast);
 
-/** Give all blocks back. */
+/** Give all blocks of a tile that has a state back. */
 void
 lp_kbuf_tile_flush(struct lp_kbuf_tile *tile);
 
-/** The color buffers are about to be used by something else. */
+/**
+ * Something else is about to use the color buffers.  The state stays: draws
+ * may follow without setting it again.
+ */
 static inline void
-lp_kbuf_tile_done(struct lp_kbuf_tile *tile)
+lp_kbuf_tile_yield(struct lp_kbuf_tile *tile)
 {
    if (tile && tile->kbuf)
       lp_kbuf_tile_flush(tile);
+}
+
+/** The state is no longer that of draws. */
+static inline void
+lp_kbuf_tile_end(struct lp_kbuf_tile *tile)
+{
+   lp_kbuf_tile_yield(tile);
+   if (tile) {
+      tile->written = 0;
+      tile->kbuf = NULL;
+   }
 }
 
 /** A new state is about to be used. */

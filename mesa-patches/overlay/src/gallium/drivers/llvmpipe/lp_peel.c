@@ -15,7 +15,9 @@
 #include "lp_context.h"
 #include "lp_flush.h"
 #include "lp_kbuf.h"
+#include "lp_peel_tile.h"
 #include "lp_scene.h"
+#include "lp_screen.h"
 #include "lp_setup_context.h"
 #include "lp_state.h"
 #include "lp_state_fs.h"
@@ -301,14 +303,21 @@ fits_framebuffer(const struct lp_peel_object *object,
 
 
 static bool
+has_depth(const struct pipe_framebuffer_state *fb)
+{
+   return fb->zsbuf &&
+          util_format_has_depth(util_format_description(fb->zsbuf->format));
+}
+
+
+static bool
 can_insert(const struct llvmpipe_context *lp,
            const struct pipe_framebuffer_state *fb)
 {
    const struct pipe_peel_state *peel = &lp->kbuf.peel;
    const struct lp_peel_object *object = peel->object;
 
-   return object && peel->writemask && fb->zsbuf &&
-          util_format_has_depth(util_format_description(fb->zsbuf->format)) &&
+   return object && peel->writemask && has_depth(fb) &&
           !(object->bounds &&
             (object->exhausted || !fits_framebuffer(object, fb)));
 }
@@ -342,6 +351,38 @@ lp_peel_make_key(const struct llvmpipe_context *lp,
 }
 
 
+/** The sizes of what is peeled into. */
+static void
+init_layout(struct lp_rast_peel *peel, const struct pipe_framebuffer_state *fb)
+{
+   peel->num_layers =
+      fb->zsbuf->u.tex.last_layer - fb->zsbuf->u.tex.first_layer + 1;
+   peel->num_samples = util_res_sample_count(fb->zsbuf->texture);
+   peel->num_words = 1;
+   for (unsigned i = 0; i < fb->nr_cbufs; i++) {
+      if (fb->cbufs[i])
+         peel->num_words += lp_peel_color_words(fb->cbufs[i]->format);
+   }
+}
+
+
+bool
+lp_peel_reserve(const struct llvmpipe_context *lp)
+{
+   struct llvmpipe_screen *screen = llvmpipe_screen(lp->pipe.screen);
+   struct lp_rast_peel peel;
+
+   if (!lp->kbuf.peel.object || !has_depth(&lp->framebuffer))
+      return true;
+
+   init_layout(&peel, &lp->framebuffer);
+   mtx_lock(&screen->rast_mutex);
+   const bool reserved = lp_peel_tiles_reserve(screen->rast, &peel);
+   mtx_unlock(&screen->rast_mutex);
+   return reserved;
+}
+
+
 bool
 lp_peel_update_scene(struct lp_setup_context *setup)
 {
@@ -372,14 +413,7 @@ lp_peel_update_scene(struct lp_setup_context *setup)
    stored->bounded = object->bounds != NULL;
    stored->empty = compare_depth(&stored->depth, fb->zsbuf->format,
                                  peel->empty_depth);
-   stored->num_layers =
-      fb->zsbuf->u.tex.last_layer - fb->zsbuf->u.tex.first_layer + 1;
-   stored->num_samples = util_res_sample_count(fb->zsbuf->texture);
-   stored->num_words = 1;
-   for (unsigned i = 0; i < fb->nr_cbufs; i++) {
-      if (fb->cbufs[i])
-         stored->num_words += lp_peel_color_words(fb->cbufs[i]->format);
-   }
+   init_layout(stored, fb);
 
    const uint64_t size =
       (uint64_t)fb->width * fb->height * stored->num_samples *

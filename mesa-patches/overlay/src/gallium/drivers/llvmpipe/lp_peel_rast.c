@@ -125,10 +125,6 @@ lp_peel_rasterize_bin(struct lp_rasterizer_task *task,
                       const lp_rast_cmd_func *dispatch)
 {
    struct lp_peel_tile *tile = lp_peel_tile_begin(task, dispatch);
-   bool draw = true;
-
-   if (!tile)
-      return;
 
    for (const struct cmd_block *block = bin->head; block; block = block->next) {
       for (unsigned k = 0; k < block->count; k++) {
@@ -142,14 +138,14 @@ lp_peel_rasterize_bin(struct lp_rasterizer_task *task,
             break;
          case LP_RAST_OP_SET_STATE:
             dispatch[cmd](task, arg);
-            draw = lp_peel_tile_set_state(tile);
+            lp_peel_tile_set_state(tile);
             break;
          case LP_RAST_OP_BEGIN_QUERY:
          case LP_RAST_OP_END_QUERY:
             dispatch[cmd](task, arg);
             break;
          default:
-            if (draw && !(tile->peel && is_refused(tile, cmd, arg)))
+            if (!(tile->peel && is_refused(tile, cmd, arg)))
                dispatch[cmd](task, arg);
             break;
          }

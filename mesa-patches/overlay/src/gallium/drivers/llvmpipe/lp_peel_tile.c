@@ -574,21 +574,50 @@ lp_peel_tile_clear(struct lp_peel_tile *tile, unsigned cmd,
  * State.
  */
 
-/** Make room for a tile of this layout. */
-static bool
-reserve(struct lp_peel_tile *tile, size_t data_size, size_t counts_size)
+static struct lp_peel_tile *
+create_tile(struct lp_rasterizer_task *task)
 {
-   if (data_size > tile->data_size) {
-      align_free(tile->data);
-      tile->data = align_malloc(data_size, 64);
-      tile->data_size = tile->data ? data_size : 0;
+   struct lp_peel_tile *tile = CALLOC_STRUCT(lp_peel_tile);
+
+   if (tile) {
+      tile->task = task;
+      tile->load_block = load_block;
+      tile->load_last = load_last;
+      task->thread_data.peel_tile = tile;
    }
-   if (counts_size > tile->counts_size) {
-      align_free(tile->counts);
-      tile->counts = align_malloc(counts_size, 64);
-      tile->counts_size = tile->counts ? counts_size : 0;
+   return tile;
+}
+
+
+bool
+lp_peel_tiles_reserve(struct lp_rasterizer *rast,
+                      const struct lp_rast_peel *peel)
+{
+   const size_t block_counts = peel->num_samples * LP_PEEL_GROUPS;
+   const size_t size =
+      LP_PEEL_TILE_BLOCKS *
+      ((size_t)peel->num_samples * peel->num_layers * peel->num_words *
+       LP_PEEL_WORD_SIZE + block_counts * sizeof(uint32_t));
+
+   for (unsigned i = 0; i < MAX2(1, rast->num_threads); i++) {
+      struct lp_peel_tile *tile = rast->tasks[i].thread_data.peel_tile;
+
+      if (!tile)
+         tile = create_tile(&rast->tasks[i]);
+      if (!tile)
+         return false;
+
+      if (size > tile->reserved) {
+         uint8_t *data = align_malloc(size, 64);
+
+         if (!data)
+            return false;
+         /* What the thread has not taken yet is smaller. */
+         align_free(p_atomic_xchg(&tile->spare, data));
+         tile->reserved = size;
+      }
    }
-   return tile->data && tile->counts;
+   return true;
 }
 
 
@@ -599,15 +628,6 @@ lp_peel_tile_begin(struct lp_rasterizer_task *task,
    struct lp_peel_tile *tile = task->thread_data.peel_tile;
    struct lp_peel_parts *parts = task->scene->peel_parts;
 
-   if (!tile) {
-      tile = CALLOC_STRUCT(lp_peel_tile);
-      if (!tile)
-         return NULL;
-      tile->task = task;
-      tile->load_block = load_block;
-      tile->load_last = load_last;
-      task->thread_data.peel_tile = tile;
-   }
    tile->dispatch = dispatch;
    tile->farthest = INT32_MAX;
    tile->part = NULL;
@@ -619,7 +639,19 @@ lp_peel_tile_begin(struct lp_rasterizer_task *task,
 }
 
 
-bool
+static void
+take_spare(struct lp_peel_tile *tile)
+{
+   uint8_t *data = p_atomic_xchg(&tile->spare, NULL);
+
+   if (data) {
+      align_free(tile->data);
+      tile->data = data;
+   }
+}
+
+
+void
 lp_peel_tile_set_state(struct lp_peel_tile *tile)
 {
    const struct lp_rasterizer_task *task = tile->task;
@@ -630,15 +662,14 @@ lp_peel_tile_set_state(struct lp_peel_tile *tile)
                   peel->object != tile->peel->object)))
       lp_peel_tile_flush(tile);
    if (!peel)
-      return true;
+      return;
 
    tile->sample_size = peel->num_layers * peel->num_words * LP_PEEL_WORD_SIZE;
    tile->block_size = peel->num_samples * tile->sample_size;
-   if (!tile->num_valid &&
-       !reserve(tile, (size_t)LP_PEEL_TILE_BLOCKS * tile->block_size,
-                LP_PEEL_TILE_BLOCKS * peel->num_samples * LP_PEEL_GROUPS *
-                sizeof(uint32_t)))
-      return false;
+   if (!tile->num_valid)
+      take_spare(tile);
+   tile->counts = (uint32_t *)(tile->data + (size_t)LP_PEEL_TILE_BLOCKS *
+                                            tile->block_size);
 
    tile->peel = peel;
    tile->last_layer = peel->num_layers - 1;
@@ -650,7 +681,6 @@ lp_peel_tile_set_state(struct lp_peel_tile *tile)
          peel->num_samples;
       tile->bound_blocks_x = peel->object->blocks_x;
    }
-   return true;
 }
 
 
@@ -712,7 +742,7 @@ lp_peel_tiles_destroy(struct lp_rasterizer *rast)
 
       if (tile) {
          align_free(tile->data);
-         align_free(tile->counts);
+         align_free(tile->spare);
          FREE(tile);
       }
    }

@@ -63,7 +63,7 @@ struct lp_peel_tile
 {
    /* Used by generated code. */
    uint8_t *data;
-   uint32_t *counts;      /**< of block, sample, group */
+   uint32_t *counts;      /**< of block, sample, group; behind the data */
    void (*load_block)(struct lp_peel_tile *tile, uint32_t block);
    void (*load_last)(struct lp_peel_tile *tile, uint32_t block);
    uint32_t block_size;   /**< in bytes */
@@ -92,8 +92,8 @@ struct lp_peel_tile
    union lp_rast_cmd_arg color_clears[PIPE_MAX_COLOR_BUFS];
    union lp_rast_cmd_arg depth_clear;
 
-   size_t data_size;     /**< what is allocated */
-   size_t counts_size;
+   uint8_t *spare;    /**< a larger one for data and counts, or NULL */
+   size_t reserved;   /**< bytes of the largest one; not the thread's */
 };
 
 /** How many quads a group has, see generate_fragment(). */
@@ -104,7 +104,17 @@ lp_peel_group_quads(void)
 }
 
 /**
- * The tile of the task, for a new bin; NULL if there is no memory.
+ * Have room for such layers in all threads.  Called before they are drawn to,
+ * with the rasterizer's mutex held.
+ *
+ * \return false if there is no memory
+ */
+bool
+lp_peel_tiles_reserve(struct lp_rasterizer *rast,
+                      const struct lp_rast_peel *peel);
+
+/**
+ * The tile of the task, for a new bin.
  *
  * \param dispatch  does what is not done here
  */
@@ -112,8 +122,8 @@ struct lp_peel_tile *
 lp_peel_tile_begin(struct lp_rasterizer_task *task,
                    const lp_rast_cmd_func *dispatch);
 
-/** Get ready for the state that the task has; false if there is no memory. */
-bool
+/** Get ready for the state that the task has. */
+void
 lp_peel_tile_set_state(struct lp_peel_tile *tile);
 
 /** Clear a color buffer, or depth and stencil. */

@@ -223,9 +223,6 @@ create_machine(struct sp_kbuffer *kb)
 static void
 set_program(struct sp_kbuffer *kb, struct sp_kbuffer_program *prog)
 {
-   if (prog && !create_machine(kb))
-      prog = NULL;
-
    if (prog == kb->program)
       return;
 
@@ -237,35 +234,37 @@ set_program(struct sp_kbuffer *kb, struct sp_kbuffer_program *prog)
    }
 }
 
-static void
+static bool
 set_constants(struct sp_kbuffer *kb, const void *constants, unsigned size)
 {
    if (size > kb->constants_size) {
       FREE(kb->constants);
       kb->constants = MALLOC(size);
    }
+   kb->constants_size = kb->constants ? size : 0;
 
-   if (!kb->constants)
-      size = 0;
+   if (kb->constants_size < size)
+      return false;
    if (size)
       memcpy(kb->constants, constants, size);
-   kb->constants_size = size;
+   return true;
 }
 
-static void
+static bool
 set_sampler(struct pipe_context *pipe, struct sp_kbuffer *kb, unsigned unit,
             const struct pipe_sampler_state *state)
 {
    struct sp_sampler **sampler = &kb->sampler->sp_sampler[unit];
 
    if (*sampler && !memcmp(&(*sampler)->base, state, sizeof(*state)))
-      return;
+      return true;
 
    FREE(*sampler);
    *sampler = softpipe_create_sampler_state(pipe, state);
+   return *sampler != NULL;
 }
 
-static void
+static bool
 set_sampler_view(struct pipe_context *pipe, struct sp_kbuffer *kb,
                  unsigned unit, struct pipe_sampler_view *view)
 {
@@ -274,7 +273,7 @@ set_sampler_view(struct pipe_context *pipe, struct sp_kbuffer *kb,
    if (view && !kb->tex_cache[unit]) {
       kb->tex_cache[unit] = sp_create_tex_tile_cache(pipe);
       if (!kb->tex_cache[unit])
-         view = NULL;
+         return false;
    }
 
    if (kb->tex_cache[unit])
@@ -292,9 +291,28 @@ set_sampler_view(struct pipe_context *pipe, struct sp_kbuffer *kb,
    } else {
       memset(sview, 0, sizeof(*sview));
    }
+   return true;
 }
 
-static void
+/** All that a program needs; false if there is no memory. */
+static bool
+set_resources(struct pipe_context *pipe, struct sp_kbuffer *kb,
+              const struct pipe_kbuffer_state *state)
+{
+   if (!create_machine(kb) ||
+       !set_constants(kb, state->constants, state->constants_size))
+      return false;
+
+   for (unsigned i = 0; i < state->num_sampler_views; i++) {
+      kb->num_sampler_views = MAX2(kb->num_sampler_views, i + 1);
+      if (!set_sampler_view(pipe, kb, i, state->sampler_views[i]) ||
+          !set_sampler(pipe, kb, i, &state->samplers[i]))
+         return false;
+   }
+   return true;
+}
+
+static bool
 softpipe_set_kbuffer_state(struct pipe_context *pipe,
                            const struct pipe_kbuffer_state *state)
 {
@@ -303,23 +321,20 @@ softpipe_set_kbuffer_state(struct pipe_context *pipe,
 
    draw_flush(sp->draw);
 
-   set_program(kb, state->program);
+   const bool complete = !state->program || set_resources(pipe, kb, state);
+
+   set_program(kb, complete ? state->program : NULL);
    kb->num_color_buffers = state->num_color_buffers;
    kb->peel = state->peel;
-
-   if (kb->program)
-      set_constants(kb, state->constants, state->constants_size);
 
    /* An unbound stage must not keep textures alive. */
    const unsigned num_views = kb->program ? state->num_sampler_views : 0;
 
-   for (unsigned i = 0; i < num_views; i++) {
-      set_sampler_view(pipe, kb, i, state->sampler_views[i]);
-      set_sampler(pipe, kb, i, &state->samplers[i]);
-   }
    for (unsigned i = num_views; i < kb->num_sampler_views; i++)
       set_sampler_view(pipe, kb, i, NULL);
    kb->num_sampler_views = num_views;
+
+   return complete;
 }
 
 void

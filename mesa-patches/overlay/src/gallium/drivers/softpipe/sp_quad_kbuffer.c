@@ -297,8 +297,11 @@ sp_kbuffer_clamp_depth(const struct softpipe_context *sp,
       max = MAX2(near_val, far_val);
    }
 
-   for (unsigned j = 0; j < TGSI_QUAD_SIZE; j++)
-      z[j] = CLAMP(z[j], min, max);
+   /* A NaN stays one: CLAMP would make min of it. */
+   for (unsigned j = 0; j < TGSI_QUAD_SIZE; j++) {
+      if (!isnan(z[j]))
+         z[j] = CLAMP(z[j], min, max);
+   }
 }
 
 static void
