@@ -100,6 +100,8 @@ format(void *data)
 	kb_fill(&kb, 0, 0.1f, 0.3f, 0.7f, 0.9f);
 	before = kb_read(&kb, 0);
 	kb_program("MOV result.kbuffer[0], 1;");
+	/* What a draw without the program would leave. */
+	glColor4f(0, 0, 0, 0);
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	glColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_TRUE);
 	kb_draw(&kb);

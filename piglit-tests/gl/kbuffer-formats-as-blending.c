@@ -70,7 +70,7 @@ renderable(GLenum format)
 static void
 add(const struct kb *kb, float *got)
 {
-	glClearColor(.3, .2, .4, .1);
+	glClearColor(.6, .2, .8, .4);
 	glClear(GL_COLOR_BUFFER_BIT);
 	kb_draw(kb);
 	glReadPixels(0, 0, W, W, GL_RGBA, GL_FLOAT, got);
@@ -87,6 +87,7 @@ test_format(const struct format *f)
 		return true;
 	}
 	kb = kb_create(f->format, 1, 0, W, W);
+	/* More than a step of any of the formats is added to. */
 	kb_fragment_value(.4, .5, .2, .6);
 	glEnable(GL_BLEND);
 	glBlendFunc(GL_ONE, GL_ONE);

@@ -51,7 +51,7 @@ fixed_function(void *data)
 	glColor4f(.25, .5, .75, 1);
 	kb_draw(&kb);
 	return data == weigh ? check(&kb, 63.75, 127.5, 191.25, 255) :
-		check(&kb, .25, .5, .75, 1);
+		check(&kb, .5, 1, 1.5, 2);
 }
 
 /** Texturing, color sum and fog are before. */
@@ -60,7 +60,7 @@ fixed_function_fog(void *data)
 {
 	static const float texel[4] = { .5, .5, 1, 1 };
 	static const float fog[4] = { 1, 0, 0, 0 };
-	struct kb kb = make("MOV result.kbuffer[0], fragment.color;");
+	struct kb kb = make("MUL result.kbuffer[0], fragment.color, 2;");
 	GLuint tex;
 	bool pass;
 
@@ -80,7 +80,7 @@ fixed_function_fog(void *data)
 	glColor4f(.5, 1, .25, 1);
 	kb_draw(&kb);
 	/* (.25, .5, .25, 1) half way to (1, 0, 0) */
-	pass = kb_expect(&kb, 0, 1e-6, .625, .25, .125, 1);
+	pass = kb_expect(&kb, 0, 1e-6, 1.25, .5, .25, 2);
 	glDeleteTextures(1, &tex);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
@@ -227,7 +227,7 @@ on_fixed = { GL_TRUE, GL_RGBA8, true };
 
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("fixed-function", fixed_function,
-		   "MOV result.kbuffer[0], fragment.color;"),
+		   "MUL result.kbuffer[0], fragment.color, 2;"),
 	KB_SUBTEST("fixed-function-every-output", fixed_function, weigh),
 	KB_SUBTEST("fixed-function-texture-and-fog", fixed_function_fog, NULL),
 	KB_SUBTEST("arb-single-color", arb_single_color, NULL),

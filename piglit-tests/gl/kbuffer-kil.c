@@ -166,10 +166,10 @@ fragment_discard(void *data)
 	static const char fp[] = "!!ARBfp1.0\nTEMP t;\n"
 		"SUB t, fragment.position.x, 16;\nKIL t.x;\n"
 		"MOV result.color, 1;\nEND\n";
-	static const float inside[4] = { 1, 1, 1, 1 }, outside[4];
+	static const float inside[4] = { 2, 2, 2, 2 }, outside[4];
 	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, W);
 
-	kb_program("ADD result.kbuffer[0], kbuffer[0], fragment.color;");
+	kb_program("MAD result.kbuffer[0], fragment.color, 2, kbuffer[0];");
 	kb_fragment_value(1, 1, 1, 1);
 	if (kb_load(GL_FRAGMENT_PROGRAM_ARB, fp, strlen(fp)))
 		return PIGLIT_FAIL;

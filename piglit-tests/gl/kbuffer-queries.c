@@ -19,6 +19,8 @@ make(const char *program)
 	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, W);
 
 	kb_program(program);
+	/* What a draw without the program would leave. */
+	glColor4f(0, 0, 0, 0);
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	return kb;
 }
@@ -55,7 +57,8 @@ all_pass(void *data)
 	kb_draw_rect(&kb, 5, 6, 40, 30, .5);
 	kb_draw_rect(&kb, 0, 0, 10, 10, .5);
 	glEndQuery(GL_SAMPLES_PASSED);
-	return check_count(query, 40 * 30 + 100) ? PIGLIT_PASS : PIGLIT_FAIL;
+	return kb_expect_rect(&kb, 0, 5, 6, 40, 30, 0, 1, 1, 1, 1) &&
+		check_count(query, 40 * 30 + 100) ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
 static enum piglit_result
@@ -114,7 +117,8 @@ failed_tests(void *data)
 	kb_draw_rect(&kb, 0, 0, W, W, .75);
 	kb_draw_rect(&kb, 0, 0, 10, W, .25);
 	glEndQuery(GL_SAMPLES_PASSED);
-	return check_count(query, 10 * W) ? PIGLIT_PASS : PIGLIT_FAIL;
+	return kb_expect_rect(&kb, 0, 0, 0, 10, W, 0, 1, 1, 1, 1) &&
+		check_count(query, 10 * W) ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
 /** The query decides over a later draw with the program. */

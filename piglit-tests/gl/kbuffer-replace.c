@@ -37,9 +37,9 @@ static enum piglit_result
 covered_only(void *data)
 {
 	struct kb kb = kb_create(GL_RGBA32F, 1, 0, 64, 64);
-	static const float inside[4] = { 1, 2, 3, 4 }, outside[4];
+	static const float inside[4] = { 2, 4, 6, 8 }, outside[4];
 
-	kb_program("ADD result.kbuffer[0], kbuffer[0], fragment.color;");
+	kb_program("ADD result.kbuffer[0], fragment.color, fragment.color;");
 	kb_fragment_value(1, 2, 3, 4);
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	kb_draw_rect(&kb, 3, 5, 30, 20, 0.5f);

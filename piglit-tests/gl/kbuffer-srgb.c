@@ -147,27 +147,38 @@ writes(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
-/** The same bytes as a plain draw of the same values gives. */
+/**
+ * The same bytes as a plain draw of the same values gives.  By the program they
+ * come from the other color, which a draw without it would leave in entry 0.
+ */
 static enum piglit_result
 as_plain_draw(void *data)
 {
+	static const char plain_fp[] = "!!ARBfp1.0\n"
+		"OPTION ARB_draw_buffers;\n"
+		"PARAM p = { 16, 1, -8.5, 0.003921568627450980 };\nTEMP t;\n"
+		"MAD t.x, fragment.position.y, p.x, fragment.position.x;\n"
+		"ADD t.x, t.x, p.z;\nMUL t, t.x, p.w;\n"
+		"MOV result.color[0], 0;\nMOV result.color[1], t;\nEND\n";
 	static const char fp[] = "!!ARBfp1.0\nOPTION ARB_draw_buffers;\n"
 		"PARAM p = { 16, 1, -8.5, 0.003921568627450980 };\nTEMP t;\n"
 		"MAD t.x, fragment.position.y, p.x, fragment.position.x;\n"
 		"ADD t.x, t.x, p.z;\nMUL t, t.x, p.w;\n"
-		"MOV result.color[0], t;\nMOV result.color[1], t;\nEND\n";
+		"MOV result.color[0], t;\nMOV result.color[1], 0;\nEND\n";
 	struct kb srgb, raw = make(&srgb, data != NULL);
 	GLubyte plain[W * W][4], got[W * W][4];
 
 	kb_fragment_value(0, 0, 0, 0);
-	if (kb_load(GL_FRAGMENT_PROGRAM_ARB, fp, strlen(fp)))
+	if (kb_load(GL_FRAGMENT_PROGRAM_ARB, plain_fp, strlen(plain_fp)))
 		return PIGLIT_FAIL;
 	glDisable(GL_KBUFFER_PROGRAM_MESA);
 	kb_draw(&raw);
 	download_bytes(&srgb, plain);
 
 	upload_bytes(&srgb);
-	kb_program("MOV result.kbuffer[1], fragment.color[1];");
+	if (kb_load(GL_FRAGMENT_PROGRAM_ARB, fp, strlen(fp)))
+		return PIGLIT_FAIL;
+	kb_program("MOV result.kbuffer[1], fragment.color[0];");
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	kb_draw(&raw);
 	download_bytes(&srgb, got);
@@ -198,6 +209,7 @@ as_blending(void *data)
 	glBlendFunc(GL_CONSTANT_COLOR, GL_CONSTANT_COLOR);
 	kb_draw(&raw);
 	download_bytes(&srgb, blended);
+	glDisable(GL_BLEND);
 
 	upload_bytes(&srgb);
 	kb_program("TEMP t;\nADD t, kbuffer[1], fragment.color[1];\n"

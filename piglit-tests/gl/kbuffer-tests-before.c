@@ -23,6 +23,8 @@ make(void)
 	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, W);
 
 	kb_program("ADD result.kbuffer[0], kbuffer[0], 1;");
+	/* What a draw without the program would leave. */
+	glColor4f(0, 0, 0, 0);
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	return kb;
 }
@@ -177,7 +179,7 @@ late_depth(void *data)
 	static const char fp[] = "!!ARBfp1.0\nTEMP t;\n"
 		"SGE t, fragment.position.x, 32;\n"
 		"MAD result.depth.z, t.x, 0.5, 0.25;\n"
-		"MOV result.color, 1;\nEND\n";
+		"MOV result.color, 0;\nEND\n";
 	struct kb kb = make();
 	bool pass;
 
@@ -234,10 +236,11 @@ rasterizer_discard(void *data)
 {
 	struct kb kb = make();
 
+	kb_draw(&kb);
 	glEnable(GL_RASTERIZER_DISCARD);
 	kb_draw(&kb);
 	glDisable(GL_RASTERIZER_DISCARD);
-	return kb_expect(&kb, 0, 0, 0, 0, 0, 0) ? PIGLIT_PASS : PIGLIT_FAIL;
+	return kb_expect(&kb, 0, 0, 1, 1, 1, 1) ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
 /** Points and lines make fragments, too. */

@@ -276,6 +276,7 @@ derivatives(void *data)
 		 "TEX t, t, texture[0], 2D;\nMOV result.kbuffer[0], t;",
 		 scale / 16);
 	kb_program(body);
+	glColor4f(9, 9, 9, 9);
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	kb_draw(&kb);
 	pass = kb_expect(&kb, 0, 0, level, level, level, level);

@@ -132,6 +132,9 @@ texture_format(void *data)
 	bool pass = true;
 
 	kb_program("MOV result.kbuffer[0], kbuffer[0];");
+	/* Only a shader may draw to integers, without the program. */
+	kb_use_glsl("void main() { gl_Position = gl_Vertex; }\n", NULL,
+		    "void main() { gl_FragColor = vec4(1.); }\n");
 	glEnable(K);
 	glBindTexture(GL_TEXTURE_2D, kb.tex[0]);
 	for (int i = 0; i < 3; i++) {

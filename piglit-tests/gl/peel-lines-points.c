@@ -119,7 +119,7 @@ polygon_mode(void *data)
 	struct peel p = make(4), q = make(4);
 	struct peel_vertex vertices[3 * NUM];
 	uint32_t *depth, *color;
-	bool pass;
+	bool pass, full = false;
 
 	peel_seed(6);
 	peel_random_triangles(vertices, NUM, 1);
@@ -137,6 +137,7 @@ polygon_mode(void *data)
 		const int at = i % (45 * 38) * 4 + i / (45 * 38);
 
 		p.model.depth[at] = depth[i];
+		full |= i >= 45 * 38 * 3 && depth[i] < peel_max_depth(q.depth);
 		memcpy(p.model.color[at], color + 4 * i, 16);
 	}
 	p.model.overflow = peel_get(GL_DEPTH_PEELING_OVERFLOW_MESA);
@@ -144,6 +145,10 @@ polygon_mode(void *data)
 	glPolygonMode(GL_FRONT_AND_BACK, GL_POINT);
 	peel_draw_vertices(GL_TRIANGLES, vertices, 3 * NUM);
 	pass = peel_check(&p);
+	if (!full) {
+		printf("there is nothing in the last layer\n");
+		pass = false;
+	}
 	free(depth);
 	free(color);
 	peel_end(&p, pass);
