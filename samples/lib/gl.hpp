@@ -24,22 +24,22 @@
     F(BindFramebuffer) F(BindImageTexture) F(BindProgramARB) F(BindTexture) F(BindVertexArray) \
     F(BlendEquation) F(BlendFunc) F(BlendFuncSeparate) F(BlendFuncSeparatei) F(BlendFunci) \
     F(BlitFramebuffer) F(BufferData) F(CheckFramebufferStatus) F(Clear) F(ClearBufferSubData) \
-    F(ClearBufferfv) F(ClearBufferiv) F(ClearBufferuiv) F(ClearColor) F(ClearDepth) F(ColorMask) \
-    F(CompileShader) F(CreateProgram) F(CreateShader) F(DeleteBuffers) F(DeleteFramebuffers) \
-    F(DeleteProgram) F(DeleteProgramsARB) F(DeleteQueries) F(DeleteShader) F(DeleteTextures) \
-    F(DeleteVertexArrays) F(DepthFunc) F(DepthMask) F(Disable) F(DrawArrays) F(DrawBuffers) \
-    F(DrawElements) F(Enable) F(EnableVertexAttribArray) F(EndQuery) F(Finish) F(Flush) \
-    F(FramebufferParameteri) F(FramebufferTexture) F(FramebufferTexture2D) \
+    F(ClearBufferfv) F(ClearBufferiv) F(ClearBufferuiv) F(ClearColor) F(ClearDepth) F(ClipControl) \
+    F(ColorMask) F(CompileShader) F(CreateProgram) F(CreateShader) F(CullFace) F(DeleteBuffers) \
+    F(DeleteFramebuffers) F(DeleteProgram) F(DeleteProgramsARB) F(DeleteQueries) F(DeleteShader) \
+    F(DeleteTextures) F(DeleteVertexArrays) F(DepthFunc) F(DepthMask) F(DepthRange) F(Disable) \
+    F(DrawArrays) F(DrawBuffers) F(DrawElements) F(Enable) F(EnableVertexAttribArray) F(EndQuery) \
+    F(Finish) F(Flush) F(FramebufferParameteri) F(FramebufferTexture) F(FramebufferTexture2D) \
     F(FramebufferTextureLayer) F(GenBuffers) F(GenFramebuffers) F(GenProgramsARB) F(GenQueries) \
     F(GenTextures) F(GenVertexArrays) F(GetBufferSubData) F(GetError) F(GetFramebufferParameteriv) \
-    F(GetIntegerv) F(GetProgramInfoLog) F(GetProgramiv) \
-    F(GetQueryObjectui64v) F(GetQueryObjectuiv) F(GetShaderInfoLog) F(GetShaderiv) F(GetString) \
-    F(GetStringi) F(GetTexImage) F(GetUniformLocation) F(LinkProgram) F(MemoryBarrier) \
-    F(PixelStorei) F(ProgramEnvParameter4fARB) F(ProgramLocalParameter4fARB) F(ProgramStringARB) \
-    F(ReadBuffer) F(ReadPixels) F(Scissor) F(ShaderSource) F(TexBuffer) F(TexImage2D) \
-    F(TexImage2DMultisample) F(TexImage3D) F(TexImage3DMultisample) F(TexParameteri) F(Uniform1f) \
-    F(Uniform1i) F(Uniform3f) F(Uniform4f) F(UniformMatrix3fv) F(UniformMatrix4fv) F(UseProgram) \
-    F(VertexAttrib4f) F(VertexAttribPointer) F(Viewport)
+    F(GetIntegerv) F(GetMultisamplefv) F(GetProgramInfoLog) F(GetProgramiv) F(GetQueryObjectui64v) \
+    F(GetQueryObjectuiv) F(GetShaderInfoLog) F(GetShaderiv) F(GetString) F(GetStringi) \
+    F(GetTexImage) F(GetUniformLocation) F(LinkProgram) F(MemoryBarrier) F(PixelStorei) \
+    F(ProgramEnvParameter4fARB) F(ProgramLocalParameter4fARB) F(ProgramStringARB) F(ReadBuffer) \
+    F(ReadPixels) F(Scissor) F(ShaderSource) F(TexBuffer) F(TexImage2D) F(TexImage2DMultisample) \
+    F(TexImage3D) F(TexImage3DMultisample) F(TexParameteri) F(Uniform1f) F(Uniform1i) F(Uniform3f) \
+    F(Uniform4f) F(UniformMatrix3fv) F(UniformMatrix4fv) F(UseProgram) F(VertexAttrib4f) \
+    F(VertexAttribPointer) F(Viewport)
 // clang-format on
 
 namespace kb
