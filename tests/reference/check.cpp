@@ -19,8 +19,8 @@ constexpr double shader_rounding = 0x1p-22; ///< Of colors that two compilations
 
 using Finding = std::optional<std::string>;
 
-/// What can be told apart in a channel: the format's rounding, or of values that pass unchanged that
-/// of the shader.
+/// What can be told apart in a channel: the format's rounding, or of values that pass unchanged
+/// that of the shader.
 double format_rounding(ColorFormat format, std::size_t channel, double value, bool flat)
 {
     const double shader = flat ? 0.0 : shader_rounding;
@@ -108,16 +108,15 @@ private:
             const std::size_t pixel = i / samples_;
             const int x = static_cast<int>(pixel % std::size_t(scene_.width));
             const int y = static_cast<int>(pixel / std::size_t(scene_.width));
-            SamplePosition sample = rules_.samples[i % samples_];
-            if (fault_ == Fault::coverage)
-                sample.x += 1;
-            Coverage coverage = rasters_[t].coverage(x, y, sample);
+            const SamplePosition sample = rules_.samples[i % samples_];
+            // A mistake: all of it one step of 1/256 pixel beside.
+            const int beside = fault_ == Fault::coverage ? 1 : 0;
+            Coverage coverage = rasters_[t].coverage(x, y, {sample.x + beside, sample.y});
             if (scissors_[t] && !scissors_[t]->contains(x, y))
                 coverage = Coverage::no;
             ++statistics_.samples;
             statistics_.undecided += coverage == Coverage::undecided ? 1 : 0;
-            if (coverage != Coverage::undecided &&
-                dump.covers(i) != (coverage == Coverage::yes))
+            if (coverage != Coverage::undecided && dump.covers(i) != (coverage == Coverage::yes))
                 return fmt::format("coverage: {}: triangle {} {} it, the driver says otherwise",
                                    place(i), triangles_[t]->id,
                                    coverage == Coverage::yes ? "covers" : "does not cover");
@@ -147,8 +146,9 @@ private:
             ++statistics_.unbounded_depths;
         if (exact.agrees_with(measured))
             return std::nullopt;
-        return fmt::format("depth: {}: that of triangle {} is {:.9g}, it should be {:.9g} +- {:.2g}",
-                           place(i), triangles_[t]->id, measured, exact.value, exact.tolerance);
+        return fmt::format(
+            "depth: {}: that of triangle {} is {:.9g}, it should be {:.9g} +- {:.2g}", place(i),
+            triangles_[t]->id, measured, exact.value, exact.tolerance);
     }
 
     Finding check_color(std::size_t t, std::size_t i, int x, int y)
@@ -189,13 +189,12 @@ private:
                 const Fragment *fragment = expected(p, layer, i);
                 const std::uint32_t stored = pass.depth[layer * samples_a_layer_ + i];
                 if (stored != (fragment ? fragment->depth : empty))
-                    return fmt::format(
-                        "layers: pass {} layer {} {}: depth {:.9g}, it should be {}", p, layer,
-                        place(i), decode_depth(format, stored),
-                        fragment ? fmt::format("{:.9g} of triangle {}",
-                                               decode_depth(format, fragment->depth),
-                                               triangles_[fragment->triangle]->id)
-                                 : "empty");
+                    return fmt::format("layers: pass {} layer {} {}: depth {:.9g}, it should be {}",
+                                       p, layer, place(i), decode_depth(format, stored),
+                                       fragment ? fmt::format("{:.9g} of triangle {}",
+                                                              decode_depth(format, fragment->depth),
+                                                              triangles_[fragment->triangle]->id)
+                                                : "empty");
                 statistics_.layers += fragment ? 1 : 0;
                 for (std::size_t a = 0; a < formats_.size(); ++a) {
                     if (auto found =
@@ -225,11 +224,11 @@ private:
                 value = static_cast<double>(constant_alpha);
             const auto measured = static_cast<double>(stored[c]);
             if (!(std::abs(measured - value) <= format_rounding(format, c, value, scene_.flat)))
-                return fmt::format("channel {} of attachment {} is {:.9g}, it should be {:.9g}{}",
-                                   c, a, measured, value,
-                                   fragment ? fmt::format(" of triangle {}",
-                                                          triangles_[fragment->triangle]->id)
-                                            : " as cleared");
+                return fmt::format(
+                    "channel {} of attachment {} is {:.9g}, it should be {:.9g}{}", c, a, measured,
+                    value,
+                    fragment ? fmt::format(" of triangle {}", triangles_[fragment->triangle]->id)
+                             : " as cleared");
         }
         return std::nullopt;
     }
@@ -268,8 +267,8 @@ private:
             return {0.0, 0.0};
         const std::size_t pixel = sample / samples_;
         const auto width = static_cast<std::size_t>(scene_.width);
-        Estimate value = rasters_[fragment.triangle].color(
-            static_cast<int>(pixel % width), static_cast<int>(pixel / width), c);
+        Estimate value = rasters_[fragment.triangle].color(static_cast<int>(pixel % width),
+                                                           static_cast<int>(pixel / width), c);
         // A plane that is lost in rounding says nothing about the composite.
         if (value.tolerance > 1e-3)
             value = {static_cast<double>(fragment.color[c]), shader_rounding};
@@ -278,10 +277,10 @@ private:
         return value;
     }
 
-    /// Rounding: each layer (color += T a rgb, T *= 1 - a) and each sample (its part of the average)
-    /// rounds at most four times values of at most 1 by half of 2^-23. A color and an alpha that are
-    /// off by e and f change a layer's part by at most e + f, and the alpha all that is behind,
-    /// which is at most 1, by f.
+    /// Rounding: each layer (color += T a rgb, T *= 1 - a) and each sample (its part of the
+    /// average) rounds at most four times values of at most 1 by half of 2^-23. A color and an
+    /// alpha that are off by e and f change a layer's part by at most e + f, and the alpha all that
+    /// is behind, which is at most 1, by f.
     Finding check_composite(std::size_t p)
     {
         const Pass &pass = seen_.passes[p];
@@ -302,8 +301,8 @@ private:
                         sum[c] += transmittance * alpha.value * color.value;
                         color_tolerance = std::max(color_tolerance, color.tolerance);
                     }
-                    tolerance += (color_tolerance + 2.0 * alpha.tolerance) /
-                                 static_cast<double>(samples_);
+                    tolerance +=
+                        (color_tolerance + 2.0 * alpha.tolerance) / static_cast<double>(samples_);
                     transmittance *= 1.0 - alpha.value;
                 }
                 sum[3] += transmittance;
@@ -342,8 +341,7 @@ private:
 void fill(Observation &seen, const Scene &scene, Empty empty)
 {
     const auto samples = static_cast<std::size_t>(scene.sample_count());
-    const std::size_t count =
-        std::size_t(scene.width) * std::size_t(scene.height) * samples;
+    const std::size_t count = std::size_t(scene.width) * std::size_t(scene.height) * samples;
     ABuffer &buffer = seen.a_buffer = ABuffer(count);
     const auto overflows = [&] {
         ABuffer sorted = buffer;

@@ -55,7 +55,7 @@ struct Observation {
 /// Draws the scene; an error if the driver cannot.
 Result<Observation> observe(SceneDrawer &drawer, const Scene &scene);
 
-/// What is wrong, if anything.
+/// What is wrong, if anything: "kind: more".
 Result<std::optional<std::string>> check(SceneDrawer &drawer, const Scene &scene, Fault fault,
                                          Statistics &statistics);
 

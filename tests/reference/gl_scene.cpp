@@ -402,9 +402,8 @@ Result<std::vector<Color>> SceneDrawer::compose(const Scene &scene, const Target
 {
     if (!composed_attachment(scene))
         return std::vector<Color>();
-    const int attachments = scene.extension == Extension::peeling
-                                ? 1
-                                : static_cast<int>(target.shape().colors.size());
+    const int attachments =
+        scene.extension == Extension::peeling ? 1 : static_cast<int>(target.shape().colors.size());
     auto program = compose_program(scene, attachments);
     if (!program)
         return program.error();
@@ -433,8 +432,8 @@ Result<std::vector<Pass>> SceneDrawer::peel(const Scene &scene)
     std::vector<GLenum> formats;
     for (const ColorFormat format : scene.color_formats)
         formats.push_back(internal_format(format));
-    auto target = Target::make(gl(), {scene.width, scene.height, scene.k, scene.samples, formats,
-                                      scene.depth_format});
+    auto target = Target::make(
+        gl(), {scene.width, scene.height, scene.k, scene.samples, formats, scene.depth_format});
     if (!target)
         return target.error();
     auto program = scene_program(scene, scene.color_formats);
@@ -500,8 +499,8 @@ Result<const ArbProgram *> SceneDrawer::kbuffer_program(const Scene &scene)
 /// The fragments in the entries of a k-buffer as layers.
 static Pass unpack(const Scene &scene, const std::vector<std::vector<Color>> &attachments)
 {
-    const std::size_t samples = std::size_t(scene.width) * std::size_t(scene.height) *
-                                std::size_t(scene.sample_count());
+    const std::size_t samples =
+        std::size_t(scene.width) * std::size_t(scene.height) * std::size_t(scene.sample_count());
     const auto per_entry = static_cast<std::size_t>(fragments_per_entry(scene.layout));
     const auto k = static_cast<std::size_t>(scene.k);
     Pass pass;
@@ -543,9 +542,8 @@ Result<std::vector<Pass>> SceneDrawer::run_program(const Scene &scene)
     const int entries = entry_count(scene.layout, scene.k);
     const int layers = (entries + most_attachments - 1) / most_attachments;
     const int count = (entries + layers - 1) / layers;
-    const std::vector<GLenum> formats(std::size_t(count), scene.layout == EntryLayout::depth
-                                                              ? GL_R32F
-                                                              : GL_RGBA32F);
+    const std::vector<GLenum> formats(std::size_t(count),
+                                      scene.layout == EntryLayout::depth ? GL_R32F : GL_RGBA32F);
     auto target = Target::make(
         gl(), {scene.width, scene.height, layers, scene.samples, formats, std::nullopt});
     if (!target)

@@ -16,8 +16,8 @@
 namespace kb::reference
 {
 
-/// The alpha where there is no fragment. Colors that are extrapolated to a pixel's center beside the
-/// triangle can be negative, but are not that.
+/// The alpha where there is no fragment. Colors that are extrapolated to a pixel's center beside
+/// the triangle can be negative, but are not that.
 inline constexpr float no_fragment = -1e30F;
 
 /// What a triangle alone leaves: of every sample the color and the depth as stored.

@@ -226,10 +226,14 @@ Result<std::vector<std::uint32_t>> Target::read_depth(SampleReader &reader) cons
             codes[i] = encode_depth(*shape_.depth, static_cast<double>((*depths)[i][0]));
         return codes;
     }
-    gl().BindTexture(GL_TEXTURE_2D_ARRAY, depth_->id());
+    // glGetTexImage takes integers through floats, which 24 bits do not survive.
     const bool is_float = shape_.depth == DepthFormat::d32f;
-    gl().GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT,
-                     is_float ? GL_FLOAT : GL_UNSIGNED_INT, codes.data());
+    for (int layer = 0; layer < shape_.layers; ++layer) {
+        bind_layer(layer);
+        gl().ReadPixels(0, 0, shape_.width, shape_.height, GL_DEPTH_COMPONENT,
+                        is_float ? GL_FLOAT : GL_UNSIGNED_INT,
+                        codes.data() + std::size_t(layer) * shape_.samples_a_layer());
+    }
     for (std::uint32_t &code : codes) {
         if (is_float)
             code = encode_depth(DepthFormat::d32f, static_cast<double>(std::bit_cast<float>(code)));

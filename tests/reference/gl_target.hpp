@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Array textures that are drawn to, as a whole or a layer at a time, and read back sample by sample.
+// Array textures that are drawn to, as a whole or a layer at a time, and read back sample by
+// sample.
 
 #pragma once
 

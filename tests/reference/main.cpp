@@ -77,9 +77,8 @@ public:
         const auto elapsed = [&] {
             return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         };
-        for (std::uint64_t i = 0; options_.seconds > 0.0 ? elapsed() < options_.seconds
-                                                         : i < options_.scenes;
-             ++i) {
+        for (std::uint64_t i = 0;
+             options_.seconds > 0.0 ? elapsed() < options_.seconds : i < options_.scenes; ++i) {
             const std::uint64_t seed = options_.seed + i;
             progress_.seed = seed;
             auto status = options_.invariances
@@ -131,18 +130,23 @@ private:
         fmt::print("not ok: {}{}\n", options_.driver,
                    options_.replay.empty() ? fmt::format(" seed {}", seed) : "");
         fmt::print("  {}\n", **found);
-        return options_.replay.empty() ? report_shrunk(scene, seed) : kb::ok;
+        if (!options_.replay.empty())
+            return kb::ok;
+        return report_shrunk(scene, seed, (*found)->substr(0, (*found)->find(':')));
     }
 
-    kb::Status report_shrunk(const Scene &scene, std::uint64_t seed)
+    /// What is shrunk keeps the kind of its failure.
+    kb::Status report_shrunk(const Scene &scene, std::uint64_t seed, const std::string &kind)
     {
         const auto first_failure = [this](const Scene &smaller) -> std::optional<std::string> {
             Statistics ignored;
             auto again = check(drawer_, smaller, fault_, ignored);
             return again ? *again : std::nullopt;
         };
-        const Scene small = shrink(
-            scene, [&](const Scene &smaller) { return first_failure(smaller).has_value(); });
+        const Scene small = shrink(scene, [&](const Scene &smaller) {
+            const auto failure = first_failure(smaller);
+            return failure && failure->substr(0, failure->find(':')) == kind;
+        });
         const std::string json = to_json(small) + "\n";
         const auto path = std::filesystem::path(options_.failures) /
                           fmt::format("failing-scene-{}-{}.json", options_.driver, seed);
@@ -207,8 +211,8 @@ int run_test(const CLI::App &app, const Options &options, Fault fault, Progress 
 /// The test in a process of its own, so that a crash of the driver leaves the scene's seed.
 int run_guarded(const CLI::App &app, const Options &options, Fault fault)
 {
-    void *shared = mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE,
-                        MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    void *shared =
+        mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (shared == MAP_FAILED)
         return kb::fail(app, {"no shared memory"}, kb::exit_lacking);
     auto &progress = *new (shared) Progress;
@@ -242,8 +246,11 @@ int main(int argc, char **argv)
         ->check(CLI::IsMember({"llvmpipe", "softpipe"}))
         ->capture_default_str();
     app.add_option("--seed", options.seed, "Of the first scene; the next has the next seed")
+        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    app.add_option("--scenes", options.scenes, "How many scenes")->capture_default_str();
+    app.add_option("--scenes", options.scenes, "How many scenes")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
     app.add_option("--seconds", options.seconds, "Scenes for so long instead")
         ->check(CLI::PositiveNumber);
     app.add_option("--replay", options.replay, "Only the scene in this file");

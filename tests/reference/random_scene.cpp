@@ -55,10 +55,9 @@ private:
     {
         if (random_.one_in(3)) {
             scene_.extension = Extension::program;
-            scene_.layout =
-                random_.any_of(std::array{EntryLayout::rgbz, EntryLayout::rgbz, EntryLayout::packed,
-                                          EntryLayout::packed, EntryLayout::depth,
-                                          EntryLayout::depth4});
+            scene_.layout = random_.any_of(std::array{EntryLayout::rgbz, EntryLayout::rgbz,
+                                                      EntryLayout::packed, EntryLayout::packed,
+                                                      EntryLayout::depth, EntryLayout::depth4});
             if (scene_.layout == EntryLayout::rgbz && random_.one_in(6))
                 scene_.color_mask = {random_.one_in(2), random_.one_in(2), random_.one_in(2), true};
             return;
@@ -81,8 +80,10 @@ private:
         const bool ranks = scene_.func == Func::less || scene_.func == Func::greater;
         scene_.all_passes = ranks && random_.one_in(2);
         scene_.clear_depth = scene_.farthest_first() ? 0.0F : 1.0F;
+        // Of these rounding to the nearest and rounding down make the same integer: stock softpipe
+        // clears whole buffers by the one and scissor boxes by the other.
         if (random_.one_in(8))
-            scene_.clear_depth = scene_.farthest_first() ? 0.25F : 0.75F;
+            scene_.clear_depth = scene_.farthest_first() ? 0.2F : 0.75F;
         if (random_.one_in(8))
             scene_.color_mask = {random_.one_in(2), random_.one_in(2), random_.one_in(2),
                                  random_.one_in(2)};
@@ -169,8 +170,8 @@ private:
     std::array<float, 4> clip_position(const Place &place)
     {
         const Box &v = scene_.viewport;
-        // Far enough from the middle of two steps of 1/256 that rounding does not matter, and not on
-        // them: what is interpolated starts at the corner as it is.
+        // Far enough from the middle of two steps of 1/256 that rounding does not matter, and not
+        // on them: what is interpolated starts at the corner as it is.
         const auto window = [&](int x) {
             return x / 256.0 + (limits_.even_grid ? 0.0 : random_.between(-1.0, 1.0) / 1024.0);
         };

@@ -46,7 +46,7 @@ private:
 };
 
 struct SceneLimits {
-    int samples = 4;       ///< Of a pixel, if any.
+    int samples = 4;        ///< Of a pixel, if any.
     bool even_grid = false; ///< Corners at even multiples of 1/256 pixel, w of 1, nothing clipped.
 };
 

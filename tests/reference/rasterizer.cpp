@@ -77,8 +77,8 @@ ClipVertex cut(const ClipVertex &in, const ClipVertex &out, double d_in, double 
                            std::abs(out.color[c] - in.color[c])});
     }
     const double from_ends = std::max(in.error, out.error);
-    vertex.error = from_ends + 4.0 * u * size +
-                   length * (2.0 * from_ends + 6.0 * u * size) / (d_in - d_out);
+    vertex.error =
+        from_ends + 4.0 * u * size + length * (2.0 * from_ends + 6.0 * u * size) / (d_in - d_out);
     return vertex;
 }
 
@@ -163,8 +163,8 @@ double distance_to_segment(Point p, Point a, Point b)
     return std::hypot(ap.x - t * ab.x, ap.y - t * ab.y);
 }
 
-/// A quantity that is linear in window coordinates, by its values at three corners. The formulas are
-/// those at the head of this file.
+/// A quantity that is linear in window coordinates, by its values at three corners. The formulas
+/// are those at the head of this file.
 Estimate interpolate(std::span<const Point, 3> p, std::span<const double, 3> a,
                      double position_error, double value_error, Point at)
 {
@@ -174,9 +174,9 @@ Estimate interpolate(std::span<const Point, 3> p, std::span<const double, 3> a,
     const double a2 = a[2] - a[0];
     const double d = cross(e1, e2);
     const double sum = std::abs(e1.x * e2.y) + std::abs(e2.x * e1.y);
-    const double d_error = 2.0 * position_error * (std::abs(e1.x) + std::abs(e1.y) +
-                                                   std::abs(e2.x) + std::abs(e2.y)) +
-                           4.0 * u * sum;
+    const double d_error =
+        2.0 * position_error * (std::abs(e1.x) + std::abs(e1.y) + std::abs(e2.x) + std::abs(e2.y)) +
+        4.0 * u * sum;
     if (!(d_error < std::abs(d) / 4.0))
         return {};
     const double r = d_error / std::abs(d);
@@ -259,9 +259,8 @@ Estimate looser(const Estimate &a, const Estimate &b)
 
 TriangleRaster::TriangleRaster(const Scene &scene, Cull cull, const Triangle &triangle,
                                const RasterRules &rules)
-    : flat_(scene.flat),
-      depth_bounds_{std::min(scene.depth_range[0], scene.depth_range[1]),
-                    std::max(scene.depth_range[0], scene.depth_range[1])}
+    : flat_(scene.flat), depth_bounds_{std::min(scene.depth_range[0], scene.depth_range[1]),
+                                       std::max(scene.depth_range[0], scene.depth_range[1])}
 {
     std::vector<ClipVertex> polygon;
     for (const Vertex &vertex : triangle.vertices) {
@@ -310,8 +309,8 @@ void TriangleRaster::make_edges(const RasterRules &rules, Cull cull)
         std::array<std::array<long long, 2>, 3> p{};
         for (std::size_t i = 0; i < 3; ++i)
             p[i] = {snap(corners_[i].at.x), snap(corners_[i].at.y)};
-        const long long area = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
-                               (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
+        const long long area =
+            (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
         empty_ = area == 0 || cull == (area > 0 ? Cull::front : Cull::back);
         if (area < 0)
             std::swap(p[1], p[2]);

@@ -5,14 +5,14 @@
 //
 //   coverage  A driver that snaps vertices to 1/256 pixel (llvmpipe) decides by integers. So does
 //             this, with the rule that it has for framebuffer objects: a sample on an edge is
-//             covered if that is a left edge or a horizontal one at the bottom. The answer is exact.
-//             For triangles that are clipped, whose new corners are rounded, and for a driver that
-//             walks edges in floats (softpipe), samples nearer to the outline than the rounding
-//             moves it are undecided; all others are exact.
+//             covered if that is a left edge or a horizontal one at the bottom. The answer is
+//             exact. For triangles that are clipped, whose new corners are rounded, and for a
+//             driver that walks edges in floats (softpipe), samples nearer to the outline than the
+//             rounding moves it are undecided; all others are exact.
 //
 //   values    The value at the sample, and a bound on what the single-precision plane equations of
-//             a driver may add to it (rasterizer.cpp derives it). It is infinite where a triangle is
-//             so thin that its plane is lost in rounding.
+//             a driver may add to it (rasterizer.cpp derives it). It is infinite where a triangle
+//             is so thin that its plane is lost in rounding.
 
 #pragma once
 

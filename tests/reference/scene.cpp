@@ -176,7 +176,6 @@ Status check_triangle(const Triangle &triangle)
     return ok;
 }
 
-
 } // namespace
 
 std::size_t Scene::triangle_count() const
@@ -217,8 +216,8 @@ Status check_scene(const Scene &scene)
         return Error{"a color mask would take apart what the program keeps"};
     if (scene.viewport.width < 1 || scene.viewport.height < 1)
         return Error{"the viewport is empty"};
-    for (const double depth : {scene.depth_range[0], scene.depth_range[1],
-                               static_cast<double>(scene.clear_depth)}) {
+    for (const double depth :
+         {scene.depth_range[0], scene.depth_range[1], static_cast<double>(scene.clear_depth)}) {
         if (!(depth >= 0.0 && depth <= 1.0))
             return Error{fmt::format("a depth of {} is not in [0, 1]", depth)};
     }

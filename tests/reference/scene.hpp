@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A scene of the reference test: a framebuffer, the state that holds for all of it, and the commands
-// that draw to it. As a file it is JSON, which reproduces it bit for bit.
+// A scene of the reference test: a framebuffer, the state that holds for all of it, and the
+// commands that draw to it. As a file it is JSON, which reproduces it bit for bit.
 
 #pragma once
 
