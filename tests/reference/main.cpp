@@ -54,6 +54,7 @@ SceneLimits limits_of(const Options &options)
 {
     SceneLimits limits;
     limits.samples = options.driver == "llvmpipe" ? 4 : 0; // softpipe has no multisampling.
+    limits.several_tiles = options.digest;                 // Threads have a tile each.
     return limits;
 }
 

@@ -44,6 +44,10 @@ private:
         // Tall textures carry the samples out.
         scene_.width = random_.number(1, most);
         scene_.height = random_.number(1, scene_.samples > 0 ? std::min(most, 40) : most);
+        if (limits_.several_tiles) {
+            scene_.width = random_.number(65, 150);
+            scene_.height = random_.number(65, scene_.samples > 0 ? 90 : 150);
+        }
         scene_.k = random_.any_of(std::array{1, 2, 3, 4, 4, 5, 6, 8, 8, 12, 16, 17, 24});
         scene_.viewport = {0, 0, scene_.width, scene_.height};
         if (!limits_.even_grid && random_.one_in(5))
@@ -302,7 +306,7 @@ private:
 
     void add_steps()
     {
-        const int most = random_.one_in(4) ? 40 : 14;
+        const int most = random_.one_in(4) && !limits_.several_tiles ? 40 : 14;
         const int triangles = random_.number(1, most);
         while (static_cast<int>(all_.size()) < triangles) {
             Step step;

@@ -47,7 +47,8 @@ private:
 
 struct SceneLimits {
     int samples = 4;        ///< Of a pixel, if any.
-    bool even_grid = false; ///< Corners at even multiples of 1/256 pixel, w of 1, nothing clipped.
+    bool even_grid = false; ///< Corners at even multiples of 1/256 pixel, w is 1, nothing clipped.
+    bool several_tiles = false; ///< Pictures of more than 64 pixels each way.
 };
 
 Scene random_scene(std::uint64_t seed, const SceneLimits &limits);

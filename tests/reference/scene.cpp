@@ -198,6 +198,9 @@ Status check_scene(const Scene &scene)
                                  scene.height)};
     if (scene.samples != 0 && scene.samples != 4)
         return Error{fmt::format("{} samples, but 0 and 4 are possible", scene.samples)};
+    const auto triangles = static_cast<int>(scene.triangle_count());
+    if (scene.samples * scene.height * std::max(scene.k, triangles) > 16384)
+        return Error{"the samples of all layers are more than a texture has room for"};
     const int most = scene.extension == Extension::peeling ? 256 : max_fragments(scene.layout);
     if (scene.k < 1 || scene.k > most)
         return Error{fmt::format("k is {}, but 1 to {} are possible", scene.k, most)};
