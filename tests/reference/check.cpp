@@ -23,7 +23,7 @@ using Finding = std::optional<std::string>;
 /// that of the shader.
 double format_rounding(ColorFormat format, std::size_t channel, double value, bool flat)
 {
-    const double shader = flat ? 0.0 : shader_rounding;
+    const double shader = flat ? 0.0 : shader_rounding * std::max(1.0, std::abs(value));
     switch (format) {
     case ColorFormat::rgba32f:
         return shader;
@@ -44,6 +44,16 @@ double fit_format(ColorFormat format, double value)
 {
     const bool has_sign = format == ColorFormat::rgba32f || format == ColorFormat::rgba16f;
     return has_sign ? value : std::clamp(value, 0.0, 1.0);
+}
+
+/// Of one operation on floats, with room for the errors of errors.
+constexpr double rounding = 0x1p-23;
+
+Estimate product(const Estimate &a, const Estimate &b)
+{
+    const double value = a.value * b.value;
+    return {value, std::abs(a.value) * b.tolerance + std::abs(b.value) * a.tolerance +
+                       a.tolerance * b.tolerance + rounding * std::abs(value)};
 }
 
 std::size_t channel_count(ColorFormat format)
@@ -122,6 +132,10 @@ private:
                                    coverage == Coverage::yes ? "covers" : "does not cover");
             if (!dump.covers(i))
                 continue;
+            if (dump.count[i] > 1 && !rasters_[t].is_clipped())
+                return fmt::format("coverage: {}: triangle {} covers it {} times", place(i),
+                                   triangles_[t]->id, dump.count[i]);
+            statistics_.doubled += dump.count[i] > 1 ? 1 : 0;
             ++statistics_.fragments;
             if (auto found = check_depth(t, i, rasters_[t].depth(x, y, sample)))
                 return found;
@@ -186,6 +200,8 @@ private:
         ++statistics_.passes;
         for (std::size_t layer = 0; layer < k_; ++layer) {
             for (std::size_t i = 0; i < samples_a_layer_; ++i) {
+                if (seen_.doubled[i])
+                    continue;
                 const Fragment *fragment = expected(p, layer, i);
                 const std::uint32_t stored = pass.depth[layer * samples_a_layer_ + i];
                 if (stored != (fragment ? fragment->depth : empty))
@@ -242,7 +258,7 @@ private:
     /// take one pass more than there are fragments for, and none less.
     Finding check_passes() const
     {
-        if (scene_.extension == Extension::program)
+        if (scene_.extension == Extension::program || !seen_.knows_all())
             return std::nullopt;
         const std::size_t deepest = seen_.a_buffer.deepest();
         const std::size_t count = seen_.passes.size();
@@ -271,46 +287,50 @@ private:
                                                            static_cast<int>(pixel / width), c);
         // A plane that is lost in rounding says nothing about the composite.
         if (value.tolerance > 1e-3)
-            value = {static_cast<double>(fragment.color[c]), shader_rounding};
+            value = {static_cast<double>(fragment.color[c]), 0.0};
         value.value = fit_format(formats_[0], value.value);
         value.tolerance += format_rounding(formats_[0], c, value.value, scene_.flat);
         return value;
     }
 
-    /// Rounding: each layer (color += T a rgb, T *= 1 - a) and each sample (its part of the
-    /// average) rounds at most four times values of at most 1 by half of 2^-23. A color and an
-    /// alpha that are off by e and f change a layer's part by at most e + f, and the alpha all that
-    /// is behind, which is at most 1, by f.
+    /// Front to back over black. color += T a c and T *= 1 - a round each of their operations by
+    /// half of 2^-23 of the result; errors of the colors and alphas, and of T, go along.
     Finding check_composite(std::size_t p)
     {
         const Pass &pass = seen_.passes[p];
+        const auto samples = static_cast<double>(samples_);
         for (std::size_t pixel = 0; pixel < pass.composite.size(); ++pixel) {
             std::array<double, 4> sum{};
-            double tolerance = static_cast<double>(k_ + samples_ + 1) * 0x1p-22;
+            std::array<double, 4> error{};
+            bool known = true;
             for (std::size_t s = 0; s < samples_; ++s) {
-                double transmittance = 1.0;
+                const std::size_t sample = pixel * samples_ + s;
+                known = known && !seen_.doubled[sample];
+                Estimate through{1.0, 0.0};
                 for (std::size_t layer = 0; layer < k_; ++layer) {
-                    const std::size_t sample = pixel * samples_ + s;
                     const Fragment *fragment = expected(p, layer, sample);
                     if (!fragment)
                         break;
                     const Estimate alpha = composed_channel(*fragment, sample, 3);
-                    double color_tolerance = 0.0;
+                    const Estimate weight = product(through, alpha);
                     for (std::size_t c = 0; c < 3; ++c) {
-                        const Estimate color = composed_channel(*fragment, sample, c);
-                        sum[c] += transmittance * alpha.value * color.value;
-                        color_tolerance = std::max(color_tolerance, color.tolerance);
+                        const Estimate part =
+                            product(weight, composed_channel(*fragment, sample, c));
+                        sum[c] += part.value;
+                        error[c] += part.tolerance + rounding * std::abs(sum[c]);
                     }
-                    tolerance +=
-                        (color_tolerance + 2.0 * alpha.tolerance) / static_cast<double>(samples_);
-                    transmittance *= 1.0 - alpha.value;
+                    through = product(through,
+                                      {1.0 - alpha.value,
+                                       alpha.tolerance + rounding * std::abs(1.0 - alpha.value)});
                 }
-                sum[3] += transmittance;
+                sum[3] += through.value;
+                error[3] += through.tolerance + rounding * std::abs(sum[3]);
             }
-            for (std::size_t c = 0; c < 4; ++c) {
-                double exact = sum[c] / static_cast<double>(samples_);
-                if (fault_ == Fault::composite)
-                    exact += 1e-2;
+            for (std::size_t c = 0; c < 4 && known; ++c) {
+                const double exact = sum[c] / samples + (fault_ == Fault::composite ? 1e-2 : 0.0);
+                // Adding up the samples rounds sums, and dividing them, once more.
+                const double tolerance =
+                    error[c] / samples + (samples + 1.0) * rounding * std::abs(exact);
                 const auto measured = static_cast<double>(pass.composite[pixel][c]);
                 if (!(std::abs(measured - exact) <= tolerance))
                     return fmt::format(
@@ -337,11 +357,16 @@ private:
     std::vector<std::optional<Box>> scissors_;
 };
 
+std::size_t sample_count(const Scene &scene)
+{
+    return std::size_t(scene.width) * std::size_t(scene.height) * std::size_t(scene.sample_count());
+}
+
 /// Sends the fragments of a dump through the scene's commands.
 void fill(Observation &seen, const Scene &scene, Empty empty)
 {
     const auto samples = static_cast<std::size_t>(scene.sample_count());
-    const std::size_t count = std::size_t(scene.width) * std::size_t(scene.height) * samples;
+    const std::size_t count = sample_count(scene);
     ABuffer &buffer = seen.a_buffer = ABuffer(count);
     const auto overflows = [&] {
         ABuffer sorted = buffer;
@@ -398,6 +423,7 @@ Statistics &Statistics::operator+=(const Statistics &other)
     samples += other.samples;
     undecided += other.undecided;
     fragments += other.fragments;
+    doubled += other.doubled;
     unbounded_depths += other.unbounded_depths;
     unbounded_colors += other.unbounded_colors;
     ties += other.ties;
@@ -420,6 +446,11 @@ Result<Observation> observe(SceneDrawer &drawer, const Scene &scene)
     if (!passes)
         return passes.error();
     seen.passes = std::move(*passes);
+    seen.doubled.resize(sample_count(scene));
+    for (const TriangleDump &dump : seen.dumps) {
+        for (std::size_t i = 0; i < dump.count.size(); ++i)
+            seen.doubled[i] = seen.doubled[i] || dump.count[i] > 1;
+    }
     const double clear =
         scene.extension == Extension::peeling ? static_cast<double>(scene.clear_depth) : 1.0;
     fill(seen, scene, {encode_depth(kept_depth(scene), clear)});

@@ -5,7 +5,8 @@
 //
 //   1. The fragments of every triangle alone. Coverage: exactly, where the rasterizer decides it; a
 //      sample that it leaves undecided counts as the driver has it. Depth and color: within the
-//      bound on rounding that the rasterizer gives.
+//      bound on rounding that the rasterizer gives. Where a triangle that was clipped covers a
+//      sample twice, one of its fragments is not known, and the sample is left out of what follows.
 //   2. The layers: the depth bit for bit, integers exactly, colors within the rounding of their
 //      format. Each sample's fragments are sorted by the depths as stored. These are known to be
 //      right within their bound, so fragments farther apart than that are in the order of the exact
@@ -19,6 +20,7 @@
 #include "gl_scene.hpp"
 #include "rasterizer.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -34,6 +36,7 @@ struct Statistics {
     std::size_t samples = 0;   ///< Of all triangles.
     std::size_t undecided = 0; ///< Of them, as the driver has it.
     std::size_t fragments = 0;
+    std::size_t doubled = 0; ///< Samples that a clipped triangle covers twice: not compared.
     std::size_t unbounded_depths = 0; ///< Of triangles lost in rounding.
     std::size_t unbounded_colors = 0;
     std::size_t ties = 0; ///< Scenes with equal depths.
@@ -50,6 +53,12 @@ struct Observation {
     std::vector<Pass> passes;
     ABuffer a_buffer{0};
     bool overflow_before_clear = false; ///< A list was longer than k when it was cleared.
+    std::vector<bool> doubled; ///< Samples that a triangle covers twice: not all is known of them.
+
+    bool knows_all() const
+    {
+        return std::find(doubled.begin(), doubled.end(), true) == doubled.end();
+    }
 };
 
 /// Draws the scene; an error if the driver cannot.

@@ -71,6 +71,22 @@ std::string fragment_shader(bool flat, const std::vector<ColorFormat> &outputs)
                        flat ? "flat" : "smooth", declarations, assignments);
 }
 
+std::string counting_fragment_shader(bool flat)
+{
+    return fmt::format(R"(#version 330
+{} in vec4 color;
+layout(location = 0) out vec4 result;
+layout(location = 1) out vec4 count;
+
+void main()
+{{
+    result = color;
+    count = vec4(1.0);
+}}
+)",
+                       flat ? "flat" : "smooth");
+}
+
 /// Front to back over black, for each sample; alpha is the transmittance.
 std::string compose_shader(const Scene &scene, int attachments)
 {
@@ -265,11 +281,9 @@ void SceneDrawer::begin_step(const Step &step) const
     }
 }
 
-Result<const Program *> SceneDrawer::scene_program(const Scene &scene,
-                                                   const std::vector<ColorFormat> &outputs)
+Result<const Program *> SceneDrawer::program_of(const std::string &vertex,
+                                                const std::string &fragment)
 {
-    const std::string vertex = vertex_shader(scene.flat);
-    const std::string fragment = fragment_shader(scene.flat, outputs);
     auto found = programs_.find(fragment);
     if (found == programs_.end()) {
         auto program = Program::make(gl(), vertex, fragment);
@@ -287,21 +301,24 @@ Result<std::vector<TriangleDump>> SceneDrawer::dump(const Scene &scene)
         return dumps;
     if (auto uploaded = upload(scene); !uploaded)
         return uploaded.error();
-    auto program = scene_program(scene, {ColorFormat::rgba32f});
+    auto program = program_of(vertex_shader(scene.flat), counting_fragment_shader(scene.flat));
     if (!program)
         return program.error();
     auto target = Target::make(gl(), {scene.width,
                                       scene.height,
                                       static_cast<int>(dumps.size()),
                                       scene.samples,
-                                      {GL_RGBA32F},
+                                      {GL_RGBA32F, GL_R32F},
                                       kept_depth(scene)});
     if (!target)
         return target.error();
 
     gl().Disable(GL_SCISSOR_TEST);
-    gl().ClearColor(0.0F, 0.0F, 0.0F, no_fragment);
+    gl().ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
     gl().ClearDepth(1.0);
+    gl().Enable(GL_BLEND);
+    gl().BlendFunci(0, GL_ONE, GL_ZERO);
+    gl().BlendFunci(1, GL_ONE, GL_ONE); // Counts.
     gl().Enable(GL_DEPTH_TEST);
     gl().DepthFunc(GL_ALWAYS);
     gl().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -319,13 +336,17 @@ Result<std::vector<TriangleDump>> SceneDrawer::dump(const Scene &scene)
     gl().Disable(GL_SCISSOR_TEST);
     gl().Disable(GL_CULL_FACE);
     gl().Disable(GL_DEPTH_TEST);
+    gl().Disable(GL_BLEND);
     gl().DepthRange(0.0, 1.0);
     auto colors = target->read_color(0, reader_);
+    auto counts = target->read_color(1, reader_);
     auto depths = target->read_depth(reader_);
     if (auto drawn = check_gl(gl(), "drawing the triangles alone"); !drawn)
         return drawn.error();
     if (!colors)
         return colors.error();
+    if (!counts)
+        return counts.error();
     if (!depths)
         return depths.error();
     const auto size = static_cast<std::ptrdiff_t>(target->shape().samples_a_layer());
@@ -333,6 +354,8 @@ Result<std::vector<TriangleDump>> SceneDrawer::dump(const Scene &scene)
         const auto at = static_cast<std::ptrdiff_t>(t) * size;
         dumps[t].color.assign(colors->begin() + at, colors->begin() + at + size);
         dumps[t].depth.assign(depths->begin() + at, depths->begin() + at + size);
+        for (auto count = counts->begin() + at; count != counts->begin() + at + size; ++count)
+            dumps[t].count.push_back(static_cast<std::uint8_t>((*count)[0]));
     }
     return dumps;
 }
@@ -385,26 +408,13 @@ void SceneDrawer::draw_steps(const Scene &scene, std::size_t attachments) const
     gl().ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-Result<const Program *> SceneDrawer::compose_program(const Scene &scene, int attachments)
-{
-    const std::string fragment = compose_shader(scene, attachments);
-    auto found = programs_.find(fragment);
-    if (found == programs_.end()) {
-        auto program = Program::make(gl(), full_screen_vertex_shader, fragment);
-        if (!program)
-            return program.error();
-        found = programs_.emplace(fragment, std::move(*program)).first;
-    }
-    return &found->second;
-}
-
 Result<std::vector<Color>> SceneDrawer::compose(const Scene &scene, const Target &target)
 {
     if (!composed_attachment(scene))
         return std::vector<Color>();
     const int attachments =
         scene.extension == Extension::peeling ? 1 : static_cast<int>(target.shape().colors.size());
-    auto program = compose_program(scene, attachments);
+    auto program = program_of(full_screen_vertex_shader, compose_shader(scene, attachments));
     if (!program)
         return program.error();
     const Texture picture = make_texture_2d(gl(), GL_RGBA32F, scene.width, scene.height);
@@ -436,7 +446,8 @@ Result<std::vector<Pass>> SceneDrawer::peel(const Scene &scene)
         gl(), {scene.width, scene.height, scene.k, scene.samples, formats, scene.depth_format});
     if (!target)
         return target.error();
-    auto program = scene_program(scene, scene.color_formats);
+    auto program =
+        program_of(vertex_shader(scene.flat), fragment_shader(scene.flat, scene.color_formats));
     if (!program)
         return program.error();
 
@@ -548,7 +559,8 @@ Result<std::vector<Pass>> SceneDrawer::run_program(const Scene &scene)
         gl(), {scene.width, scene.height, layers, scene.samples, formats, std::nullopt});
     if (!target)
         return target.error();
-    auto program = scene_program(scene, {ColorFormat::rgba32f});
+    auto program =
+        program_of(vertex_shader(scene.flat), fragment_shader(scene.flat, {ColorFormat::rgba32f}));
     if (!program)
         return program.error();
     auto insertion = kbuffer_program(scene);

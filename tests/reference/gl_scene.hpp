@@ -16,16 +16,15 @@
 namespace kb::reference
 {
 
-/// The alpha where there is no fragment. Colors that are extrapolated to a pixel's center beside
-/// the triangle can be negative, but are not that.
-inline constexpr float no_fragment = -1e30F;
-
-/// What a triangle alone leaves: of every sample the color and the depth as stored.
+/// What a triangle alone leaves: of every sample the number of fragments, and the color and the
+/// depth as stored of the last of them. There is one or none; but the clipper makes triangles of a
+/// triangle, and where snapping turns one of them over, two of them cover a sample.
 struct TriangleDump {
+    std::vector<std::uint8_t> count;
     std::vector<Color> color;
     std::vector<std::uint32_t> depth;
 
-    bool covers(std::size_t sample) const { return color[sample][3] != no_fragment; }
+    bool covers(std::size_t sample) const { return count[sample] > 0; }
 };
 
 /// What one pass leaves.
@@ -75,9 +74,7 @@ private:
     void begin_step(const Step &step) const;
     void clear(const Scene &scene, std::size_t attachments) const;
     void draw_steps(const Scene &scene, std::size_t attachments) const;
-    Result<const Program *> scene_program(const Scene &scene,
-                                          const std::vector<ColorFormat> &outputs);
-    Result<const Program *> compose_program(const Scene &scene, int attachments);
+    Result<const Program *> program_of(const std::string &vertex, const std::string &fragment);
     Result<std::vector<Color>> compose(const Scene &scene, const Target &target);
     Result<std::vector<Pass>> peel(const Scene &scene);
     Result<std::vector<Pass>> run_program(const Scene &scene);

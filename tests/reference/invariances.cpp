@@ -348,7 +348,7 @@ Result<Finding> alpha_zero(SceneDrawer &drawer, std::uint64_t seed, const SceneL
         step.triangles = with_copies;
     }
     return compare_scenes(drawer, scene, more, [](const Drawn &a, const Drawn &b) -> Finding {
-        if (b.seen().a_buffer.deepest() > static_cast<std::size_t>(k))
+        if (!b.seen().knows_all() || b.seen().a_buffer.deepest() > static_cast<std::size_t>(k))
             return std::nullopt; // They push others out.
         return compare_composites(a, b, "with fragments of alpha 0");
     });
@@ -363,6 +363,8 @@ Result<Finding> more_layers(SceneDrawer &drawer, std::uint64_t seed, const Scene
     auto before = Drawn::make(drawer, composed_scene(seed, limits, random.number(1, 3)));
     if (!before)
         return before.error();
+    if (!before->seen().knows_all())
+        return Finding();
     const int deepest = std::clamp(static_cast<int>(before->seen().a_buffer.deepest()), 1, 60);
     const std::array<int, 3> more{std::min(before->scene().k + random.number(1, 4), deepest),
                                   deepest, deepest + random.number(1, 4)};
@@ -412,7 +414,7 @@ Result<Finding> one_larger_pass(SceneDrawer &drawer, std::uint64_t seed, const S
     larger.all_passes = false;
     larger.k = std::clamp(static_cast<int>(scene.triangle_count()), 1, 60);
     return compare_scenes(drawer, scene, larger, [](const Drawn &a, const Drawn &b) -> Finding {
-        if (b.seen().a_buffer.deepest() > b.ranks())
+        if (!b.seen().knows_all() || b.seen().a_buffer.deepest() > b.ranks())
             return std::nullopt;
         for (std::size_t i = 0; i < a.samples_a_layer(); ++i) {
             if (auto found = compare_sample(a, b, i))

@@ -99,15 +99,15 @@ private:
         if (options_.digest)
             fmt::print("digest {:016x}\n", digest_);
         else if (!options_.invariances)
-            fmt::print("{}: {} fragments ({:.2f} % of all samples undecided, {} depths and {} "
-                       "channels without bound), {} layers in {} passes, {} composites, {} scenes "
-                       "with ties\n",
-                       options_.driver, statistics_.fragments,
-                       100.0 * static_cast<double>(statistics_.undecided) /
-                           static_cast<double>(std::max<std::size_t>(statistics_.samples, 1)),
-                       statistics_.unbounded_depths, statistics_.unbounded_colors,
-                       statistics_.layers, statistics_.passes, statistics_.composites,
-                       statistics_.ties);
+            fmt::print(
+                "{}: {} fragments ({:.3f} % of all samples undecided, {} doubled, {} depths "
+                "and {} channels without bound), {} layers in {} passes, {} composites, {} scenes "
+                "with ties\n",
+                options_.driver, statistics_.fragments,
+                100.0 * static_cast<double>(statistics_.undecided) /
+                    static_cast<double>(std::max<std::size_t>(statistics_.samples, 1)),
+                statistics_.doubled, statistics_.unbounded_depths, statistics_.unbounded_colors,
+                statistics_.layers, statistics_.passes, statistics_.composites, statistics_.ties);
         fmt::print("{} passed, {} failed, 0 skipped\n", passed_, failed_);
         return failed_ > 0 ? 1 : 0;
     }

@@ -84,10 +84,8 @@ private:
         const bool ranks = scene_.func == Func::less || scene_.func == Func::greater;
         scene_.all_passes = ranks && random_.one_in(2);
         scene_.clear_depth = scene_.farthest_first() ? 0.0F : 1.0F;
-        // Of these rounding to the nearest and rounding down make the same integer: stock softpipe
-        // clears whole buffers by the one and scissor boxes by the other.
         if (random_.one_in(8))
-            scene_.clear_depth = scene_.farthest_first() ? 0.2F : 0.75F;
+            scene_.clear_depth = scene_.farthest_first() ? 0.25F : 0.75F;
         if (random_.one_in(8))
             scene_.color_mask = {random_.one_in(2), random_.one_in(2), random_.one_in(2),
                                  random_.one_in(2)};
@@ -312,7 +310,9 @@ private:
             Step step;
             if (!scene_.all_passes && !scene_.steps.empty() && random_.one_in(10)) {
                 step.clear = true;
-                step.scissor = scissor();
+                // Stock drivers round another clear value in a scissor box than in whole buffers.
+                if (scene_.clear_depth == 0.0F || scene_.clear_depth == 1.0F)
+                    step.scissor = scissor();
                 scene_.steps.push_back(step);
                 continue;
             }

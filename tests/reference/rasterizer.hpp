@@ -78,6 +78,8 @@ public:
     TriangleRaster(const Scene &scene, Cull cull, const Triangle &triangle,
                    const RasterRules &rules);
 
+    bool is_clipped() const { return clipped_; }
+
     /// Whether the sample is covered, by the triangle alone: the scissor box is not looked at.
     Coverage coverage(int px, int py, SamplePosition sample) const;
 
