@@ -44,40 +44,45 @@ mesa_options=(-Dgallium-drivers=swrast -Dvulkan-drivers= -Dosmesa=true -Dglx=dri
 release_options=(--buildtype=release -Db_ndebug=true)
 debug_options=(--buildtype=debugoptimized -Db_ndebug=false)
 
-# A sanitized Mesa is the release but for the files that the project adds or changes: what a report
-# names is ours then, and what ccache has of the others counts. The runtime comes with the program
-# that loads the library (b_lundef), which may be a fuzzer.
+# A sanitized Mesa is the release but for the files that matter: what a report names is ours then,
+# and what ccache has of the others counts. The runtime comes with the program that loads the library
+# (b_lundef), which may be a fuzzer.
 instrumented_options=("${release_options[@]}" -Db_lundef=false)
 traceable='-O1 -g1 -fno-omit-frame-pointer -Wno-unknown-warning-option'
-# Members of null pointers: Mesa's lists and references take their addresses; a use is a crash anyway.
-sanitizers='-fsanitize=address,undefined -fno-sanitize=vptr,null'
+sanitizers='-fsanitize=address,undefined -fno-sanitize=vptr'
 
-# instrument NAME OPTIONS [FILE...]: what is configured from here on has our files, and these,
-# compiled by Clang with OPTIONS
+# instrument NAME OPTIONS FILE...: what is configured from here on has these files compiled by Clang
+# with OPTIONS
 instrument() {
     local name=$1 options=$2 list=$build/instrumented-$1.txt
     shift 2
-    {
-        overlay_files
-        hook_files | xargs -r sed -n 's|^diff --git a/\(.*\) b/.*|\1|p'
-        printf '%s\n' src/mesa/program/{lex.yy,program_parse.tab}.c "$@"
-    } | LC_ALL=C sort -u >"$list"
+    printf '%s\n' "$@" | LC_ALL=C sort -u >"$list"
     write_native_file "$name" "$root/scripts/lib/instrumenting-compiler" "$list" \
         "$traceable $options"
 }
 
-# build_sanitized_mesa, with the coverage that libFuzzer needs, which costs little elsewhere
+# Our files, with the coverage that libFuzzer needs, which costs little elsewhere
 build_sanitized_mesa() {
-    instrument sanitize "$sanitizers -fsanitize=fuzzer-no-link"
+    local files
+    mapfile -t files < <(
+        overlay_files
+        hook_files | xargs -r sed -n 's|^diff --git a/\(.*\) b/.*|\1|p'
+    )
+    instrument sanitize "$sanitizers -fsanitize=fuzzer-no-link" "${files[@]}" \
+        src/mesa/program/{lex.yy,program_parse.tab}.c
     build_mesa "sanitized Mesa" "$tree" "$tree/build-sanitize" "$build/sanitize-prefix" \
         "${instrumented_options[@]}"
 }
 
-# All of llvmpipe, since ThreadSanitizer has to see how its threads wait for each other
+# What of llvmpipe the threads share: scenes, fences, tiles, and what depth peeling keeps
 build_thread_mesa() {
-    local drivers
-    mapfile -t drivers < <(cd "$tree" && find -L src/gallium/drivers/llvmpipe -name '*.c')
-    instrument thread -fsanitize=thread "${drivers[@]}"
+    local name files=(src/mesa/state_tracker/st_{kbuffer,peel}.c)
+    for name in clear context draw_arrays fence flush kbuf kbuf_tile peel peel_parts peel_pixels \
+        peel_rast peel_tile query rast rast_linear rast_rect rast_tri scene scene_queue setup \
+        setup_rect setup_tri setup_vbuf state_derived texture; do
+        files+=("src/gallium/drivers/llvmpipe/lp_$name.c")
+    done
+    instrument thread -fsanitize=thread "${files[@]}"
     build_mesa "Mesa with ThreadSanitizer" "$tree" "$tree/build-thread" "$build/thread-prefix" \
         "${instrumented_options[@]}"
 }
