@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <regex>
 
 namespace
@@ -243,6 +244,59 @@ ProcessResult run_reference(std::vector<std::string> arguments)
 {
     arguments.insert(arguments.begin(), KBUFFER_REFERENCE_TEST);
     return kb::test::run(arguments, kb::test::mesa_environment(kb::test::patched_prefix()));
+}
+
+/// One number for some scenes of several tiles, with a setting of llvmpipe.
+std::string digest_of(const std::map<std::string, std::string> &environment,
+                      const std::string &driver = "llvmpipe")
+{
+    auto variables = kb::test::mesa_environment(kb::test::patched_prefix());
+    for (const auto &[name, value] : environment)
+        variables[name] = value;
+    const ProcessResult result = kb::test::run(
+        {KBUFFER_REFERENCE_TEST, "--driver", driver, "--digest", "--scenes", "4"}, variables);
+    EXPECT_EQ(result.status, 0) << result.out << result.err;
+    std::smatch digest;
+    if (!std::regex_search(result.out, digest, std::regex("digest ([0-9a-f]{16})"))) {
+        ADD_FAILURE() << result.out;
+        return {};
+    }
+    return digest[1];
+}
+
+TEST(ReferenceInvariance, NumberOfThreads)
+{
+    const std::string first = digest_of({{"LP_NUM_THREADS", "0"}});
+    for (int threads = 1; threads <= 16; ++threads)
+        EXPECT_EQ(digest_of({{"LP_NUM_THREADS", std::to_string(threads)}}), first) << threads;
+}
+
+TEST(ReferenceInvariance, VectorWidthAndEarlyRejection)
+{
+    const std::string first = digest_of({});
+    for (const char *width : {"128", "256"}) {
+        for (const char *culling : {"0", "1"})
+            EXPECT_EQ(digest_of({{"LP_NATIVE_VECTOR_WIDTH", width}, {"LP_KBUF_CULL", culling}}),
+                      first)
+                << width << " bits, culling " << culling;
+    }
+}
+
+TEST(ReferenceInvariance, ColdAndWarmShaderCache)
+{
+    const TempDirectory cache;
+    const std::map<std::string, std::string> cached{
+        {"MESA_SHADER_CACHE_DISABLE", "false"}, {"MESA_SHADER_CACHE_DIR", (cache / "").string()}};
+    const std::string cold = digest_of(cached);
+    EXPECT_GT(cache.file_count(), 0U) << "nothing was cached";
+    EXPECT_EQ(digest_of(cached), cold);
+    EXPECT_EQ(digest_of({}), cold);
+}
+
+TEST(ReferenceInvariance, ADigestTellsPicturesApart)
+{
+    // A test of these tests: the other driver puts edges at other places.
+    EXPECT_NE(digest_of({}, "softpipe"), digest_of({}));
 }
 
 /// Each mistake of a driver, or of this test, is found, shrunk, and found again in the file.
