@@ -9,6 +9,8 @@
 #include "layer_resolve.hpp"
 #include "renderer.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <string>
 
@@ -21,9 +23,9 @@ namespace
 constexpr std::array<GLenum, 3> attachments{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
                                             GL_COLOR_ATTACHMENT2};
 
-std::string peel_source()
+std::string peel_source(float epsilon)
 {
-    return R"(
+    return fmt::format("const float epsilon = {:e};\n", epsilon) + R"(
 uniform sampler2D bounds;
 layout(location = 0) out vec2 next_bounds;
 layout(location = 1) out vec4 front;
@@ -35,14 +37,14 @@ void main()
     vec2 bound = texelFetch(bounds, ivec2(gl_FragCoord.xy), 0).rg;
     float nearest = -bound.x;
     float farthest = bound.y;
-    if (z < nearest || z > farthest)
+    if (z < nearest - epsilon || z > farthest + epsilon)
         discard;
     next_bounds = vec2(-2.0);
     front = vec4(0.0);
     back = vec4(0.0);
-    if (z > nearest && z < farthest)
+    if (z > nearest + epsilon && z < farthest - epsilon)
         next_bounds = vec2(-z, z);
-    else if (z == nearest)
+    else if (z <= nearest + epsilon)
         front = shade();
     else
         back = shade();
@@ -53,7 +55,7 @@ void main()
 class DualPeeling final : public Renderer
 {
 public:
-    DualPeeling(const Gl &gl, Size size, int k)
+    DualPeeling(const Gl &gl, Size size, int k, float epsilon)
         : gl_(gl), front_layers_((k + 1) / 2),
           back_layers_(k / 2), bounds_{make_texture_2d(gl, GL_RG32F, size.width, size.height),
                                        make_texture_2d(gl, GL_RG32F, size.width, size.height)},
@@ -66,7 +68,7 @@ void main()
     bounds = vec2(-gl_FragCoord.z, gl_FragCoord.z);
 }
 )")),
-          peel_(make_geometry_program(gl, "", peel_source())),
+          peel_(make_geometry_program(gl, "", peel_source(epsilon))),
           // Where front and back meet.
           resolve_(gl, k, EmptyLayers::anywhere)
     {
@@ -131,9 +133,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<Renderer> make_dual_peeling(const Gl &gl, Size size, int k)
+std::unique_ptr<Renderer> make_dual_peeling(const Gl &gl, Size size, int k, float epsilon)
 {
-    return std::make_unique<DualPeeling>(gl, size, k);
+    return std::make_unique<DualPeeling>(gl, size, k, epsilon);
 }
 
 } // namespace kb::bench

@@ -33,7 +33,8 @@ protected:
 
 std::unique_ptr<Renderer> make_zbuffer(const Gl &gl, Size size);
 std::unique_ptr<Renderer> make_classic_peeling(const Gl &gl, Size size, int k);
-std::unique_ptr<Renderer> make_dual_peeling(const Gl &gl, Size size, int k);
+/// Depths that differ by no more than `epsilon` are taken for one. The study's method has none.
+std::unique_ptr<Renderer> make_dual_peeling(const Gl &gl, Size size, int k, float epsilon = 0.0F);
 std::unique_ptr<Renderer> make_fbfetch(const Gl &gl, Size size, int k);
 std::unique_ptr<Renderer> make_linked_list(const Gl &gl, Size size, int k);
 std::unique_ptr<Renderer> make_k_plus(const Gl &gl, const std::string &variant, Size size, int k);

@@ -64,6 +64,7 @@ public:
 
     /// The layers of color attachment 0.
     const Texture &color() const { return colors_.front(); }
+    const Texture &depth() const { return depth_; }
 
     const PeelingLayers &layers() const { return layers_; }
     int bytes_per_pixel() const;

@@ -23,6 +23,7 @@ static GLenum transfer_format(GLenum internal_format)
     switch (internal_format) {
     case GL_DEPTH_COMPONENT16:
     case GL_DEPTH_COMPONENT24:
+    case GL_DEPTH_COMPONENT32:
     case GL_DEPTH_COMPONENT32F:
         return GL_DEPTH_COMPONENT;
     case GL_R32UI:
