@@ -113,3 +113,65 @@ test_report_refuses_what_is_no_json() {
     prints "results.json: No such file"
     absent index.html
 }
+
+# write_rows: a folder of what the program hard-cases writes, one number of it wrong
+write_rows() {
+    mkdir -p "$project/rows"
+    "$python" - "$project/rows" <<'PYTHON'
+import json, sys
+
+def row(number, name, method, measured, form="", expected=0.75):
+    right = measured == expected
+    return {"row": number, "name": name, "promise": f"promise of {name}", "form": form,
+            "method": method, "why_not": "", "right": right,
+            "quantities": [{"what": "alpha <x>", "expected": expected, "measured": measured,
+                            "tolerance": 0, "right": right}]}
+
+methods = ("depth-peeling", "kbuffer-program")
+good = [row(1, "coplanar", method, 0.75, form) for method in methods for form in ("", "4 samples")]
+broken = [row(1, "coplanar", method, 0.25) for method in methods]
+missing = dict(row(2, "other", "kbuffer-program", 0.5), quantities=[], why_not="no such entry",
+               right=False)
+rivals = [row(number, "coplanar", "classic peeling, strict", 0.5) for number in (1, 2, 3, 4, 24)]
+rivals += [row(6, "close", "dual peeling, epsilon 1e-7", 0.5),
+           row(13, "thin", "blending in 8 bits", 0.749)]
+softpipe = good[:3] + [row(1, "coplanar", "kbuffer-program", 0.625, "4 samples")]
+same = {method: "5eed" for method in methods}
+other = {method: "0ddd" for method in methods}
+documents = {"llvmpipe": good + [row(2, "other", "depth-peeling", 0.5, "", 0.5), missing],
+             "softpipe": softpipe, "stock": rivals, "lost-layer": broken, "swapped-layers": broken}
+for name, rows in documents.items():
+    json.dump({"driver": f"driver {name}", "rows": rows}, open(f"{sys.argv[1]}/{name}.json", "w"))
+for name in ("usual", "lost-layer", "threads-0", "threads-1", "threads-16", "width-128",
+             "width-256", "no-culling", "cold-cache", "warm-cache"):
+    digests = other if name == "lost-layer" else same
+    json.dump({"digests": digests}, open(f"{sys.argv[1]}/same-{name}.json", "w"))
+PYTHON
+}
+
+test_hard_cases_are_counted_and_shown() {
+    local table=("$python" -B scripts/lib/report/hard_cases.py rows hard-cases.html) text
+    write_rows
+    run 0 "${table[@]}"
+    prints "not ok: 1. coplanar 4 samples, kbuffer-program on softpipe: is wrong"
+    prints "alpha <x>: 0.625, expected 0.75 within 0"
+    # 4 + 1 and 3 rows, 4 spoiled, 7 rivals, 16 of environments and 2 spoiled ones
+    prints "37 passed, 1 failed, 0 skipped"
+    for text in "1. coplanar" "alpha &lt;x&gt;" '<td class="wrong">0.625</td>' "no such entry" \
+        "driver stock" "thread count"; do
+        grep -qF "$text" "$project/hard-cases.html" || {
+            echo "the page lacks: $text"
+            exit 1
+        }
+    done
+    # A case that a spoiled sample does not make wrong is none.
+    cp "$project/rows/llvmpipe.json" "$project/rows/lost-layer.json"
+    cp "$project/rows/same-usual.json" "$project/rows/same-lost-layer.json"
+    run 0 "${table[@]}"
+    prints "does not notice the nearest layer of one sample lost"
+    prints "not ok: 25. digest of all layers, depth-peeling"
+    rm "$project/rows/stock.json"
+    run 1 "${table[@]}"
+    prints "rows/stock.json: No such file"
+    lines 1
+}

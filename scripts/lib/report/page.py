@@ -4,35 +4,7 @@
 from html import escape
 
 import plots
-
-STYLE = """
-:root { color-scheme: light; }
-body { font: 16px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff;
-       max-width: 78rem; margin: 0 auto; padding: 1rem; }
-h1 { font-size: 1.6rem; line-height: 1.2; } h2 { margin-top: 2.5rem; border-top: 1px solid #bbb;
-     padding-top: 1rem; }
-p, ul, dl { max-width: 46rem; }
-dl { display: grid; grid-template-columns: max-content 1fr; gap: 0 1rem; }
-dt { color: #555; } dd { margin: 0; overflow-wrap: anywhere; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 22rem), 1fr));
-           gap: 1.5rem 1rem; }
-figure { margin: 0; } figure svg { width: 100%; height: auto; }
-figcaption { font-size: .9rem; color: #333; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
-.caption { font-size: .9rem; }
-th, td { padding: .15rem .5rem; text-align: right; white-space: nowrap; }
-th { white-space: normal; vertical-align: bottom; border-bottom: 1px solid #888; font-weight: 600; }
-th.text, td.text { text-align: left; }
-tbody tr:nth-child(even) { background: #f4f4f4; } td.range { color: #555; }
-tr.ours td.text { font-weight: 600; }
-@media print {
-  body { font-size: 9pt; padding: 0; max-width: none; } table { font-size: 6.5pt; }
-  th, td { padding: .05rem .25rem; } .scroll { overflow: visible; }
-  .figures { display: block; } figure { display: inline-block; width: 49%; }
-  figure, tr { break-inside: avoid; } h2, h2 + p { break-after: avoid; }
-}
-"""
+from parts import document, table
 
 GUIDE = """
 <h2>How to read this</h2>
@@ -78,20 +50,6 @@ def _small(value):
     return "0" if value == 0 else f"{value:.5f}" if value >= 1e-5 else f"{value:.0e}"
 
 
-def _table(caption, head, lines):
-    """`head`: (title, class); `lines`: (class of the row, cells)."""
-    kinds = [f' class="{kind}"' if kind else "" for _, kind in head]
-    cells = "".join(f'<th scope="col"{kind}>{escape(title)}</th>'
-                    for (title, _), kind in zip(head, kinds))
-    body = ""
-    for row_class, values in lines:
-        columns = "".join(f"<td{kind}>{escape(value)}</td>"
-                          for value, kind in zip(values, kinds, strict=True))
-        body += f'<tr class="{row_class}">{columns}</tr>\n'
-    return (f'<p class="caption">{caption}</p>\n<div class="scroll"><table>'
-            f"<thead><tr>{cells}</tr></thead>\n<tbody>\n{body}</tbody></table></div>\n")
-
-
 def _speed_up(base, row):
     """How many times as fast as another method with this k."""
     return _number(base.ratio_median / row.ratio_median) if base and base is not row else "–"
@@ -112,8 +70,8 @@ def _scene_table(study, scene):
             _speed_up(study.find(scene, "fbfetch", row.k), row),
             f"{row.bytes_per_pixel:,}", _small(row.err_max), _small(row.err_share),
             _small(row.err_all_rmse)]))
-    return _table("Every row measured; methods of the patched Mesa in bold. “Faster” is how many "
-                  "times as fast, with the same k.", head, lines)
+    return table("Every row measured; methods of the patched Mesa in bold. “Faster” is how many "
+                 "times as fast, with the same k.", head, lines)
 
 
 def _best_of_stock(study, scene, k):
@@ -139,8 +97,8 @@ def _summary(study):
                 cells += [_number(row.ratio_median) if row else "–",
                           _speed_up(best, row) if row else "–"]
             lines.append(("summary", cells))
-    return _table("Time as a multiple of an opaque z-buffered pass; “times as fast” is against the "
-                  "fastest exact method of stock Mesa with the same k.", head, lines)
+    return table("Time as a multiple of an opaque z-buffered pass; “times as fast” is against the "
+                 "fastest exact method of stock Mesa with the same k.", head, lines)
 
 
 def _figure(svg, text):
@@ -188,19 +146,10 @@ def make(study, data):
     """The page as text, with all that it needs in it; `data` is the way from it to the raw data."""
     look = plots.Look(study.rows)
     scenes = "".join(_scene(study, scene, look) for scene in study.scenes)
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Transparency without a GPU: time, error and memory</title>
-<style>{STYLE}</style>
-</head>
-<body>
-<h1>Transparency without a GPU: time, error and memory</h1>
+    return document("Transparency without a GPU: time, error and memory", f"""
 <p>Methods of transparency side by side on llvmpipe: those that stock Mesa can do, and those of the
-patched one. The raw data is in <a href="{escape(data)}">{escape(data)}</a>.</p>
+patched one. The raw data is in <a href="{escape(data)}">{escape(data)}</a>. What must stay
+numerically stable is in <a href="hard-cases.html">hard-cases.html</a>, which
+<code>scripts/test --only hard-cases</code> makes.</p>
 {_summary(study)}
-{scenes}{GUIDE}{_machine(study.machine)}</body>
-</html>
-"""
+{scenes}{GUIDE}{_machine(study.machine)}""")
