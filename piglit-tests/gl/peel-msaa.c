@@ -112,68 +112,6 @@ continuation(void *data)
 	return peel_end(&p, pass);
 }
 
-/**
- * Two quads that share an edge through the pixels, both of alpha one half:
- * each sample has exactly one of them, so that the composite is one half in
- * every pixel.  (A blend per pixel gives .625 along the edge.)
- */
-static enum piglit_result
-abutting(void *data)
-{
-	struct peel p = make(4, GL_DEPTH_COMPONENT32F, GL_RGBA32F, 0);
-	/* A slanted edge from below to above. */
-	const struct peel_vertex vertices[] = {
-		{ -1, -1, .5, 1, 1 }, { .1, -1, .5, 1, 1 }, { -.3, 1, .5, 1, 1 },
-		{ -1, -1, .5, 1, 1 }, { -.3, 1, .5, 1, 1 }, { -1, 1, .5, 1, 1 },
-		{ .1, -1, .5, 1, 2 }, { 1, -1, .5, 1, 2 }, { 1, 1, .5, 1, 2 },
-		{ .1, -1, .5, 1, 2 }, { 1, 1, .5, 1, 2 }, { -.3, 1, .5, 1, 2 },
-	};
-	uint32_t *depth, *color;
-	bool pass = true, partly = false;
-
-	kb_use_glsl("#version 150 compatibility\n"
-		    "void main() { gl_Position = gl_Vertex; }\n", NULL,
-		    "#version 150 compatibility\nout vec4 o;\n"
-		    "void main() { o = vec4(gl_PrimitiveID / 2 + 1, 0, 0, .5); }\n");
-	peel_draw_vertices(GL_TRIANGLES, vertices, ARRAY_SIZE(vertices));
-	depth = peel_read_samples(&p, p.depth_tex, p.depth);
-	color = peel_read_samples(&p, p.color_tex[0], p.color[0]);
-	for (int i = 0; i < W * H && pass; i++) {
-		double sum = 0;
-		int first = 0;
-
-		for (int s = 0; s < 4; s++) {
-			double light = 1;
-
-			for (int l = 0; l < 4; l++) {
-				const int at = (s * 4 + l) * W * H + i;
-				float alpha, which;
-
-				if (depth[at] == peel_max_depth(p.depth))
-					continue;
-				memcpy(&alpha, &color[4 * at + 3], 4);
-				memcpy(&which, &color[4 * at], 4);
-				light *= 1 - alpha;
-				first += which == 1;
-			}
-			sum += (1 - light) / 4;
-		}
-		partly |= first > 0 && first < 4;
-		if (sum != .5) {
-			printf("alpha at (%d, %d) is %g, not .5\n", i % W,
-			       i / W, sum);
-			pass = false;
-		}
-	}
-	if (!partly) {
-		printf("the edge went through no pixel\n");
-		pass = false;
-	}
-	free(depth);
-	free(color);
-	return peel_end(&p, pass);
-}
-
 /** All samples are at the pixel's center. */
 static enum piglit_result
 multisample_off(void *data)
@@ -270,7 +208,6 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("lequal", quads, &lequal),
 	KB_SUBTEST("gequal", quads, &gequal),
 	KB_SUBTEST("continuation", continuation, NULL),
-	KB_SUBTEST("abutting-quads", abutting, NULL),
 	KB_SUBTEST("multisample-off", multisample_off, NULL),
 	KB_SUBTEST("sample-shading", sample_shading, NULL),
 	KB_SUBTEST("shader-depth", shader_depth, NULL),
