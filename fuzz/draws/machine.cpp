@@ -106,6 +106,12 @@ void Machine::switch_context()
         glGenQueries(GLsizei(queries[current_].size()), queries[current_].data());
 }
 
+bool Machine::knows_framebuffer()
+{
+    const GLuint name = GLuint(get_integer(GL_DRAW_FRAMEBUFFER_BINDING));
+    return name == 0 || (bound_framebuffer() && !orphaned_framebuffers.contains(name));
+}
+
 Framebuffer *Machine::bound_framebuffer()
 {
     const GLuint name = GLuint(get_integer(GL_DRAW_FRAMEBUFFER_BINDING));

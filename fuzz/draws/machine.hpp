@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -107,11 +108,15 @@ public:
     unsigned context() const { return current_; }
 
     Framebuffer *bound_framebuffer(); ///< The draw framebuffer, unless it is the window.
+    /// Whether that is certain. One that is deleted lives on where another context has bound it,
+    /// and its name may be given away again.
+    bool knows_framebuffer();
 
     Trace trace;
     std::array<Texture, texture_slots> textures;
     std::map<GLuint, TextureForm> forms;
     std::array<Framebuffer, framebuffer_slots> framebuffers;
+    std::set<GLuint> orphaned_framebuffers; ///< Names that were deleted while bound elsewhere.
     std::vector<KbufferProgram> kbuffer_programs;
     std::map<int, GLuint> shader_programs; ///< By the index of the fragment stage.
     std::array<GLuint, 2> renderbuffers{};

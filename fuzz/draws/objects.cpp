@@ -202,6 +202,8 @@ void delete_framebuffer(Machine &machine, Args &args)
 {
     Framebuffer &framebuffer =
         machine.framebuffers[std::size_t(args.below(Machine::framebuffer_slots))];
+    if (framebuffer.contexts & ~(1U << machine.context()))
+        machine.orphaned_framebuffers.insert(framebuffer.name);
     CALL(machine, glDeleteFramebuffers, 1, &framebuffer.name);
     framebuffer = {};
     glGenFramebuffers(1, &framebuffer.name);
@@ -343,14 +345,17 @@ void first_layer(Machine &machine, Args &args)
     else if (kind > 0 && framebuffer)
         value =
             framebuffer->peel.first_layer + attachment_of(machine, GL_DEPTH_ATTACHMENT).form.layers;
-    const Expected expected = framebuffer ? expected_of_first_layer(machine, *framebuffer, value)
-                                          : std::optional<unsigned>(invalid_operation);
+    const bool known = machine.knows_framebuffer();
+    Expected expected;
+    if (known)
+        expected = framebuffer ? expected_of_first_layer(machine, *framebuffer, value)
+                               : Expected(invalid_operation);
     CALL(machine, glFramebufferParameteri, target, name, value);
     const GLenum error = machine.check_error("setting FIRST_LAYER",
                                              expected.value_or(invalid_value | invalid_operation));
     if (expected.value_or(no_error) != no_error && error == GL_NO_ERROR)
         finding("FIRST_LAYER is set to {} without the error that the specification demands", value);
-    if (!framebuffer)
+    if (!framebuffer || !known)
         return;
     if (error == GL_NO_ERROR)
         note_first_layer(machine, *framebuffer, value);
@@ -382,6 +387,9 @@ void default_size(Machine &machine, Args &args)
         GL_NAMED(GL_FRAMEBUFFER_DEFAULT_WIDTH), GL_NAMED(GL_FRAMEBUFFER_DEFAULT_HEIGHT),
         GL_NAMED(GL_FRAMEBUFFER_DEFAULT_LAYERS), GL_NAMED(GL_FRAMEBUFFER_DEFAULT_SAMPLES)};
     const Named name = args.pick(names);
+    // Stock Mesa waits for itself forever if vertices of Begin and End are pending here and the
+    // framebuffer's status is asked for next.
+    CALL(machine, glFlush);
     CALL(machine, glFramebufferParameteri, GL_NAMED(GL_DRAW_FRAMEBUFFER), name,
          name.value == GL_FRAMEBUFFER_DEFAULT_SAMPLES ? 4 * args.below(2) : args.below(17));
 }

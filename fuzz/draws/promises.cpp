@@ -186,6 +186,8 @@ Expected expected_of_draw(Machine &machine)
     const bool runs_program = glIsEnabled(GL_KBUFFER_PROGRAM_MESA);
     if (glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         return invalid_framebuffer | invalid_operation;
+    if (!machine.knows_framebuffer())
+        return std::nullopt;
     bool known = true;
     for (const auto &error : {peels ? peeling_is_error(machine) : false,
                               runs_program ? kbuffer_is_error(machine) : false}) {
