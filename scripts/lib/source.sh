@@ -56,7 +56,7 @@ mesa_from_distribution() { # FOLDER
 # Sets debian_patches to the archive, in build/download, of what Debian adds to this release.
 fetch_debian_patches() {
     local folder
-    debian_patches=$(find "$(dirname "$mesa_tarball")" -name "mesa_$mesa_version-*.debian.tar.*" |
+    debian_patches=$(find "$(dirname "$mesa_tarball")/" -name "mesa_$mesa_version-*.debian.tar.*" |
         sort -V | tail -n 1)
     [ -z "$debian_patches" ] || return 0
     make_temporary folder
