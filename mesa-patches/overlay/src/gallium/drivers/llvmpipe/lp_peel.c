@@ -7,6 +7,7 @@
 
 #include "compiler/nir/nir.h"
 #include "util/format/u_format.h"
+#include "util/u_atomic.h"
 #include "util/u_debug.h"
 #include "util/u_framebuffer.h"
 #include "util/u_memory.h"
@@ -263,7 +264,7 @@ llvmpipe_get_peel_overflow(struct pipe_context *pipe, void *state)
    const struct lp_peel_object *object = state;
 
    llvmpipe_finish(pipe, "peel overflow");
-   return object->overflow != 0;
+   return p_atomic_read(&object->overflow) != 0;
 }
 
 

@@ -114,7 +114,7 @@ load_depth(const struct peel_stage *stage, struct quad_header *quads[],
    if (!(stage->layout.is_float && interpolated && !clamped))
       sp_kbuffer_clamp_depth(sp, viewport_index, z);
 
-   for (unsigned j = 0; j < TGSI_QUAD_SIZE; j++) {
+   u_foreach_bit(j, mask) {
       if (stage->layout.is_float)
          depth[j] = fui(z[j]);
       else if (stage->layout.max == 0xffffffff)
