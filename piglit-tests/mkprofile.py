@@ -3,9 +3,10 @@
 # SPDX-License-Identifier: MIT
 """mkprofile.py SOURCE_DIR BUILD_DIR SHADER_RUNNER OUT.xml.gz [LAUNCHER...]
 
-Writes a piglit profile of this folder: a test for each executable in
-BUILD_DIR/bin and for each SOURCE_DIR/shaders/*.shader_test, by absolute paths,
-so that any piglit's `run` can execute them; LAUNCHER goes in front of each."""
+Writes a piglit profile of this folder: a test for each SOURCE_DIR/gl/*.c of
+which there is a program in BUILD_DIR/bin, and for each
+SOURCE_DIR/shaders/*.shader_test, by absolute paths, so that any piglit's `run`
+can execute them; LAUNCHER goes in front of each."""
 import glob
 import gzip
 import os
@@ -14,9 +15,12 @@ import xml.etree.ElementTree as et
 
 
 def tests(source, build, runner):
-    for path in sorted(glob.glob(build + '/bin/*')):
-        if os.access(path, os.X_OK):
-            yield os.path.basename(path), [os.path.abspath(path)]
+    # BUILD_DIR/bin may still have tests that are no longer there.
+    for path in sorted(glob.glob(source + '/gl/*.c')):
+        name = os.path.basename(path)[:-len('.c')]
+        program = os.path.abspath(f'{build}/bin/{name}')
+        if os.access(program, os.X_OK):
+            yield name, [program]
     for path in sorted(glob.glob(source + '/shaders/*.shader_test')):
         name = os.path.basename(path)[:-len('.shader_test')]
         yield name, [os.path.abspath(runner), os.path.abspath(path)]
