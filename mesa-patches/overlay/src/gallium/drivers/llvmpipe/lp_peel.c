@@ -28,9 +28,6 @@
 /** From this size on layers go to memory past the caches. */
 #define STREAM_SIZE (64 << 20)
 
-/** A scene grows by no more than this for the layers it peels into. */
-#define MAX_SCENE_GROWTH (256 << 20)
-
 
 /* Off: every fragment is shaded.  Makes no difference to images. */
 DEBUG_GET_ONCE_BOOL_OPTION(kbuf_cull, "LP_KBUF_CULL", true)
@@ -422,6 +419,6 @@ lp_peel_update_scene(struct lp_setup_context *setup)
    stored->stream = size > STREAM_SIZE;
 
    setup->fs.current.peel = stored;
-   setup->scene->peel_size = MIN2(size, MAX_SCENE_GROWTH);
+   setup->scene->peels = true;
    return true;
 }

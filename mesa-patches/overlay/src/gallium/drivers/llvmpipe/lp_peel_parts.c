@@ -38,7 +38,7 @@ lp_peel_split_scene(struct lp_scene *scene)
    struct lp_peel_parts *parts = NULL;
 
    /* A part that does not peel is run by those who know nothing of counts. */
-   if (!scene->peel_size)
+   if (!scene->peels)
       return NULL;
 
    if (!scene->peel_parts)
