@@ -82,9 +82,9 @@ compare_depth(const struct lp_peel_depth_format *format,
               enum pipe_format pipe_format, double depth)
 {
    uint64_t value = util_pack64_z_stencil(pipe_format, depth, 0);
-   const uint64_t mask = (UINT64_C(1) << format->width) - 1;
 
-   return lp_peel_compare_bits(format, (value >> format->shift) & mask);
+   return lp_peel_compare_bits(format, (value >> format->shift) &
+                                       lp_peel_depth_mask(format));
 }
 
 

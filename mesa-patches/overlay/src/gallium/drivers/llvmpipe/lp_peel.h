@@ -80,6 +80,13 @@ struct lp_rast_peel
    bool stream;         /**< all of it is more than the caches hold */
 };
 
+/** Which bits are the depth's, the lowest of them at 0. */
+static inline uint32_t
+lp_peel_depth_mask(const struct lp_peel_depth_format *format)
+{
+   return format->width == 32 ? ~0u : (1u << format->width) - 1;
+}
+
 /** Depth bits, the lowest of them at 0, to comparable form, and back. */
 static inline int32_t
 lp_peel_compare_bits(const struct lp_peel_depth_format *format, uint32_t bits)
