@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <ranges>
 
 namespace kb::hard
 {
@@ -31,10 +30,10 @@ Composite composite_front_to_back(std::span<const Fragment> fragments)
 Composite composite_back_to_front(std::span<const Fragment> fragments)
 {
     Composite sum;
-    for (const Fragment &fragment : fragments | std::views::reverse) {
+    std::for_each(fragments.rbegin(), fragments.rend(), [&](const Fragment &fragment) {
         sum.color = fragment.alpha * fragment.value + (1.0F - fragment.alpha) * sum.color;
         sum.alpha = fragment.alpha + (1.0F - fragment.alpha) * sum.alpha;
-    }
+    });
     return sum;
 }
 
