@@ -256,6 +256,41 @@ interleaved(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** With no other change of state: the second draw goes on with the first's. */
+static enum piglit_result
+clear_between_draws(void *data)
+{
+	const struct shape *shape = data;
+	const float color[4] = { 1, 2, 3, 4 };
+	struct kb kb = kb_create(shape->format, shape->attachments,
+				 shape->layers, W, H);
+	const int n = MIN2(kb_entries(&kb), MAX_ENTRIES);
+	const struct rect all = { 0, 0, W, H };
+	image *model = calloc(kb_entries(&kb), sizeof(image));
+	char *text = malloc(64 * n + 512);
+	bool pass;
+
+	program_text(SHIFT, n, text);
+	glBindProgramARB(GL_KBUFFER_PROGRAM_MESA, kb_program(text));
+	kb_fragment_values((const float[8][4]) { { 0 } }, shape->attachments);
+	glProgramLocalParameter4fvARB(GL_FRAGMENT_PROGRAM_ARB, 0, color);
+	glClearColor(7, 7, 7, 7);
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	kb_draw_rect(&kb, 0, 0, W, H, 0.5);
+	glClear(GL_COLOR_BUFFER_BIT);
+	kb_draw_rect(&kb, 0, 0, W, H, 0.5);
+	glDisable(GL_KBUFFER_PROGRAM_MESA);
+
+	for (int e = 0; e < kb_entries(&kb); e++)
+		model_set(model, e, all, (const float[4]) { 7, 7, 7, 7 },
+			  false);
+	model_set(model, 0, all, color, false);
+	pass = compare(&kb, model);
+	free(model);
+	free(text);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 static const struct shape one = { 1, 0, GL_RGBA32F },
 	eight = { 8, 0, GL_RGBA32F }, layers = { 1, 16, GL_RGBA32F },
 	many = { 8, 8, GL_RGBA32F }, bytes = { 4, 4, GL_RGBA8 },
@@ -268,6 +303,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("8x8-rgba32f", interleaved, &many),
 	KB_SUBTEST("4x4-rgba8", interleaved, &bytes),
 	KB_SUBTEST("3x5-rgba16f", interleaved, &halves),
+	KB_SUBTEST("clear-between-draws", clear_between_draws, &many),
 	KB_SUBTEST_END
 };
 
