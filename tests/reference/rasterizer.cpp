@@ -328,6 +328,7 @@ void TriangleRaster::make_edges(const RasterRules &rules, Cull cull)
         return;
     }
 
+    walks_ = !rules.snaps;
     // Snapping moves a corner by up to 1/512 in x and y. Walking an edge in floats adds less than
     // 16 u of the largest coordinate.
     band_ = std::sqrt(2.0) * (error + (rules.snaps ? 1.0 / 512.0 : 0.0)) + 16.0 * u * size;
@@ -358,6 +359,13 @@ double TriangleRaster::distance(Point sample) const
     return inside ? nearest : -nearest;
 }
 
+bool TriangleRaster::passes_corner(double y) const
+{
+    return std::any_of(corners_.begin(), corners_.end(), [&](const Corner &corner) {
+        return std::abs(corner.at.y - y) <= band_;
+    });
+}
+
 Coverage TriangleRaster::coverage(int px, int py, SamplePosition sample) const
 {
     if (empty_)
@@ -371,9 +379,10 @@ Coverage TriangleRaster::coverage(int px, int py, SamplePosition sample) const
         return inside ? Coverage::yes : Coverage::no;
     }
     // If the corners of a convex polygon move by no more than the band, its outline does, too.
-    const double d = distance({px + sample.x / 256.0, py + sample.y / 256.0});
+    const Point at{px + sample.x / 256.0, py + sample.y / 256.0};
+    const double d = distance(at);
     if (d > band_)
-        return Coverage::yes;
+        return walks_ && passes_corner(at.y) ? Coverage::undecided : Coverage::yes;
     return d < -band_ ? Coverage::no : Coverage::undecided;
 }
 

@@ -8,7 +8,10 @@
 //             covered if that is a left edge or a horizontal one at the bottom. The answer is
 //             exact. For triangles that are clipped, whose new corners are rounded, and for a
 //             driver that walks edges in floats (softpipe), samples nearer to the outline than the
-//             rounding moves it are undecided; all others are exact.
+//             rounding moves it are undecided; all others are exact. Where edges are walked this
+//             holds for the whole row at the height of a corner, too: stock softpipe draws the rows
+//             below and above the middle corner one after the other, and rounding can leave out the
+//             one between them.
 //
 //   values    The value at the sample, and a bound on what the single-precision plane equations of
 //             a driver may add to it (rasterizer.cpp derives it). It is infinite where a triangle
@@ -96,6 +99,7 @@ private:
 
     void make_edges(const RasterRules &rules, Cull cull);
     double distance(Point sample) const;
+    bool passes_corner(double y) const;
 
     /// Calls `use` with each three corners that a driver may have made a triangle of.
     template <class Use>
@@ -103,6 +107,7 @@ private:
 
     bool empty_ = false;
     bool exact_ = false; ///< By edges_; else by the outline and its band.
+    bool walks_ = false; ///< Along its edges, row by row.
     bool clipped_ = false;
     bool flat_ = true;
     std::array<double, 4> flat_color_{};

@@ -137,6 +137,15 @@ TEST(ReferenceRasterizer, WithoutSnappingEdgesThroughSamplesAreUndecided)
               "?.../?\?../?#?./????");
 }
 
+TEST(ReferenceRasterizer, WithoutSnappingTheRowOfACornerIsUndecided)
+{
+    const Scene scene = scene_of({{{0.25, -8.0}, {3.75, 1.5}, {0.25, 12.0}}});
+    EXPECT_EQ(coverage_of(scene, {}), "###./###./####/###.");
+    RasterRules rules;
+    rules.snaps = false;
+    EXPECT_EQ(coverage_of(scene, rules), "###./###./????/###.");
+}
+
 TEST(ReferenceRasterizer, DepthIsThatOfThePlane)
 {
     const Scene scene = scene_of({{{0.0, 0.0}, {4.0, 0.0}, {0.0, 4.0}}});
