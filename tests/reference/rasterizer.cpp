@@ -361,9 +361,8 @@ double TriangleRaster::distance(Point sample) const
 
 bool TriangleRaster::passes_corner(double y) const
 {
-    return std::any_of(corners_.begin(), corners_.end(), [&](const Corner &corner) {
-        return std::abs(corner.at.y - y) <= band_;
-    });
+    return std::any_of(corners_.begin(), corners_.end(),
+                       [&](const Corner &corner) { return std::abs(corner.at.y - y) <= band_; });
 }
 
 Coverage TriangleRaster::coverage(int px, int py, SamplePosition sample) const
