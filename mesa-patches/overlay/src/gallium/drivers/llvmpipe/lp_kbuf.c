@@ -137,7 +137,7 @@ llvmpipe_delete_kbuffer_state(struct pipe_context *pipe, void *state)
 }
 
 
-static bool
+bool
 llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
                            const struct pipe_kbuffer_state *state)
 {
@@ -180,7 +180,7 @@ llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
    }
 
    lp->dirty |= LP_NEW_KBUFFER;
-   return (!state || kbuf->program == state->program) && lp_peel_reserve(lp);
+   return !state || kbuf->program == state->program;
 }
 
 

@@ -101,6 +101,11 @@ lp_kbuf_init(struct llvmpipe_context *lp);
 void
 lp_kbuf_destroy(struct llvmpipe_context *lp);
 
+/** As pipe_context::set_kbuffer_state, without the memory for depth peeling. */
+bool
+llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
+                           const struct pipe_kbuffer_state *state);
+
 /** Add the stage to a key that holds the framebuffer and blend state. */
 void
 lp_kbuf_make_key(const struct llvmpipe_context *lp,

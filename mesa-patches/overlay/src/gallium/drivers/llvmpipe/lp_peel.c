@@ -265,16 +265,6 @@ llvmpipe_get_peel_overflow(struct pipe_context *pipe, void *state)
 }
 
 
-void
-lp_peel_init(struct llvmpipe_context *lp)
-{
-   lp->pipe.create_peel_object = llvmpipe_create_peel_object;
-   lp->pipe.delete_peel_object = llvmpipe_delete_peel_object;
-   lp->pipe.advance_peel_object = llvmpipe_advance_peel_object;
-   lp->pipe.get_peel_overflow = llvmpipe_get_peel_overflow;
-}
-
-
 /*
  * Draws.
  */
@@ -364,8 +354,9 @@ init_layout(struct lp_rast_peel *peel, const struct pipe_framebuffer_state *fb)
 }
 
 
-bool
-lp_peel_reserve(const struct llvmpipe_context *lp)
+/** Have the memory that the bound state needs; false if there is none. */
+static bool
+reserve_tiles(const struct llvmpipe_context *lp)
 {
    struct llvmpipe_screen *screen = llvmpipe_screen(lp->pipe.screen);
    struct lp_rast_peel peel;
@@ -378,6 +369,26 @@ lp_peel_reserve(const struct llvmpipe_context *lp)
    const bool reserved = lp_peel_tiles_reserve(screen->rast, &peel);
    mtx_unlock(&screen->rast_mutex);
    return reserved;
+}
+
+
+static bool
+llvmpipe_set_peel_state(struct pipe_context *pipe,
+                        const struct pipe_kbuffer_state *state)
+{
+   return llvmpipe_set_kbuffer_state(pipe, state) &&
+          reserve_tiles(llvmpipe_context(pipe));
+}
+
+
+void
+lp_peel_init(struct llvmpipe_context *lp)
+{
+   lp->pipe.create_peel_object = llvmpipe_create_peel_object;
+   lp->pipe.delete_peel_object = llvmpipe_delete_peel_object;
+   lp->pipe.advance_peel_object = llvmpipe_advance_peel_object;
+   lp->pipe.get_peel_overflow = llvmpipe_get_peel_overflow;
+   lp->pipe.set_kbuffer_state = llvmpipe_set_peel_state;
 }
 
 

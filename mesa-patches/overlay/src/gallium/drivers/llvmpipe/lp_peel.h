@@ -114,10 +114,6 @@ lp_peel_color_words(enum pipe_format format);
 void
 lp_peel_init(struct llvmpipe_context *lp);
 
-/** Have the memory that the bound state needs; false if there is none. */
-bool
-lp_peel_reserve(const struct llvmpipe_context *lp);
-
 /** Add peeling to a key that holds the framebuffer and blend state. */
 void
 lp_peel_make_key(const struct llvmpipe_context *lp,
