@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include "tet_grid.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace kb
+{
+
+/// The faces of the cells of a grid, each once. Points keep their indices.
+struct FaceMesh {
+    std::vector<glm::vec3> positions;
+    std::vector<float> scalars; ///< One a position.
+    std::vector<glm::uvec3> triangles;
+    /// The first ones are shared by two cells; the others belong to one cell and are the boundary,
+    /// counterclockwise seen from outside.
+    std::size_t interior_count = 0;
+};
+
+/// Cells without volume add no faces. Of the faces with the same three points, two that are seen
+/// from opposite sides make one interior face; those that are left over are boundary.
+FaceMesh make_face_mesh(const TetGrid &grid, const ScalarField &field);
+
+} // namespace kb
