@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 
 #include "mesh.hpp"
+#include "unit_sphere.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -10,7 +11,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <unordered_map>
 
 namespace kb
@@ -92,21 +92,7 @@ void join_identical_vertices(Mesh &mesh)
 
 void fit_to_unit_sphere(Mesh &mesh)
 {
-    if (mesh.positions.empty())
-        return;
-    glm::vec3 low(std::numeric_limits<float>::max());
-    glm::vec3 high(std::numeric_limits<float>::lowest());
-    for (const auto &p : mesh.positions) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    const glm::vec3 center = 0.5F * low + 0.5F * high;
-    float radius = 0.0F;
-    for (const auto &p : mesh.positions)
-        radius = std::max(radius, glm::distance(p, center));
-    const float scale = radius > 0.0F ? 1.0F / radius : 1.0F;
-    for (auto &p : mesh.positions)
-        p = (p - center) * scale;
+    fit_to_unit_sphere(std::span(mesh.positions));
 }
 
 /// A hue of full saturation, for a turn of 0 to 1.
