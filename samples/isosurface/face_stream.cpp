@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+
+#include "fragment_stream.hpp"
+
+#include "face_program.hpp"
+
+namespace kb
+{
+
+namespace
+{
+
+constexpr const char *fragment_shader = R"(
+layout(location = 0) out vec4 fragment;
+
+void main()
+{
+    fragment = vec4(ray_distance(), tagged_scalar(), 0.0, 0.0);
+}
+)";
+
+class FaceStream final : public FragmentStream
+{
+public:
+    FaceStream(const Gl &gl, const FaceMesh &mesh, ScalarRange range, Program program)
+        : gl_(gl), faces_(gl, mesh, range), program_(std::move(program))
+    {
+    }
+
+    void sort(const OrbitCamera &camera, Size size) override { faces_.sort(camera, size); }
+
+    void draw(const OrbitCamera &camera, Size size) override
+    {
+        use_face_program(gl_, program_, camera, size);
+        faces_.draw();
+    }
+
+    Medium medium() const override { return Medium::grid; }
+    std::size_t count() const override { return faces_.count(); }
+    std::string_view primitive() const override { return "triangles"; }
+
+private:
+    const Gl &gl_;
+    SortedFaces faces_;
+    Program program_;
+};
+
+} // namespace
+
+Result<std::unique_ptr<FragmentStream>> make_face_stream(const Gl &gl, const FaceMesh &mesh,
+                                                         ScalarRange range)
+{
+    auto program = make_face_program(gl, fragment_shader);
+    if (!program)
+        return program.error();
+    return std::unique_ptr<FragmentStream>(
+        std::make_unique<FaceStream>(gl, mesh, range, std::move(*program)));
+}
+
+} // namespace kb

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+//
+// The surfaces of any number of iso-values in one pass, of a tetrahedral grid or of particles.
+//
+//     declare what is captured   make_isosurface_program
+//     draw                       FragmentStream, IsosurfaceRenderer::capture
+//     resolve                    ShadingPass
+
+#include "context.hpp"
+#include "isosurface_renderer.hpp"
+#include "options.hpp"
+#include "particles.hpp"
+#include "source.hpp"
+#include "timing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+namespace
+{
+
+/// What cannot go on, and the exit status that says whose fault it is.
+struct Failure {
+    kb::Error error;
+    int status;
+};
+
+/// Particles of the default size overlap so that no ray passes between them.
+float point_size(const kb::IsosurfaceOptions &options, const kb::Source &source)
+{
+    return options.point_size.value_or(
+        std::clamp(2.0F * kb::mean_spacing(source.points), 1e-5F, 1.0F));
+}
+
+kb::IsosurfaceSettings settings_for(const kb::IsosurfaceOptions &options, const kb::Source &source)
+{
+    kb::IsosurfaceSettings settings;
+    settings.k = options.k;
+    settings.medium = source.medium;
+    settings.shading.size = options.size;
+    settings.shading.silhouettes = options.silhouettes;
+    settings.shading.smoothing = options.smoothing.value_or(0);
+    if (source.medium == kb::Medium::particles) {
+        const float side = point_size(options, source);
+        settings.gap = options.gap.value_or(std::min(1.0F, 4.0F * side));
+        // What is smaller than a particle is noise.
+        settings.shading.depth_step = std::max(settings.shading.depth_step, side);
+        const float pixels = side / options.camera.distance *
+                             options.camera.projection(options.size)[1][1] * 0.5F *
+                             static_cast<float>(options.size.height);
+        settings.shading.smoothing =
+            options.smoothing.value_or(std::min(static_cast<int>(std::lround(pixels)), 64));
+    }
+    return settings;
+}
+
+/// Distance and iso-value, in the field's units, of each pixel's surface.
+kb::ImageRgbaF surfaces_image(const kb::IsosurfaceRenderer &renderer, kb::ScalarRange range,
+                              std::span<const kb::IsoValue> values)
+{
+    kb::ImageRgbaF image = renderer.read_surfaces();
+    for (glm::vec4 &pixel : image.pixels) {
+        if (pixel.x == 0.0F)
+            continue;
+        const auto same = [&](const kb::IsoValue &iso) {
+            return kb::normalized(iso.value, range) == pixel.y;
+        };
+        pixel.y = std::find_if(values.begin(), values.end(), same)->value;
+    }
+    return image;
+}
+
+std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &source)
+{
+    const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
+    const auto bad_input = [](const kb::Error &error) {
+        return Failure{error, kb::exit_bad_input};
+    };
+
+    auto context = kb::make_context(options.context, options.size, "isosurface");
+    if (!context)
+        return lacking(context.error());
+    const kb::Gl &gl = (*context)->gl();
+    if (auto supported = kb::require_kbuffer_program(gl); !supported)
+        return lacking(supported.error());
+    auto stream = kb::make_stream(gl, source, point_size(options, source));
+    if (!stream)
+        return lacking(stream.error());
+    auto renderer = kb::IsosurfaceRenderer::make(gl, settings_for(options, source));
+    if (!renderer)
+        return lacking(renderer.error());
+    const auto values = kb::choose_iso_values(options, source.range);
+    if (auto set = renderer->set_iso_values(kb::normalized(values, source.range)); !set)
+        return bad_input(set.error());
+
+    const auto draw = [&] {
+        (*stream)->sort(options.camera, options.size);
+        renderer->capture(**stream, options.camera);
+        renderer->shade(options.camera);
+    };
+    std::vector<double> times;
+    for (int i = 0; i < options.repeat; ++i)
+        times.push_back(kb::milliseconds(gl, draw));
+    if (auto drawn = kb::check_gl(gl, "drawing"); !drawn)
+        return lacking(drawn.error());
+
+    const kb::ImageRgbaF picture = kb::read_color(gl, renderer->framebuffer(), options.size);
+    if (auto written = kb::write_outputs(options.outputs, picture, {}); !written)
+        return bad_input(written.error());
+    if (!options.surfaces.empty()) {
+        const auto image = surfaces_image(*renderer, source.range, values);
+        if (auto written = kb::write_pfm(options.surfaces, image); !written)
+            return bad_input(written.error());
+    }
+
+    const kb::Spread spread = kb::spread_of(times);
+    fmt::print("isosurface k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), 1 geometry "
+               "pass, {} {}, {} iso-value{}, {} bytes per pixel\n",
+               options.k, options.size.width, options.size.height, spread.median, spread.p5,
+               spread.p95, times.size(), (*stream)->count(), (*stream)->primitive(), values.size(),
+               values.size() == 1 ? "" : "s", renderer->bytes_per_pixel());
+
+    while ((*context)->present(renderer->framebuffer(), options.size, options.camera))
+        draw();
+    return std::nullopt;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    kb::IsosurfaceOptions options;
+    CLI::App app("Draws the surfaces of any number of iso-values in one pass: of a tetrahedral "
+                 "grid, or of\nparticles drawn as points. A k-buffer program "
+                 "(GL_MESA_kbuffer_program) puts the fragments in\norder and finds the surfaces "
+                 "between them.",
+                 "isosurface");
+    kb::declare_options(app, options);
+    if (const auto status = kb::parse_command_line(app, argc, argv))
+        return *status;
+    for (const auto &checked :
+         {kb::check_options(options), kb::check_writable(options.outputs),
+          kb::check_writable({.picture = options.surfaces, .floats = {}, .layers = {}})}) {
+        if (!checked)
+            return kb::fail(app, checked.error(), kb::exit_bad_input);
+    }
+    const auto source = kb::make_source(options);
+    if (!source)
+        return kb::fail(app, source.error(), kb::exit_bad_input);
+
+    try {
+        if (const auto failure = run(options, *source))
+            return kb::fail(app, failure->error, failure->status);
+    } catch (const std::bad_alloc &) {
+        return kb::fail(app, kb::Error{"there is not enough memory for --size and --k"},
+                        kb::exit_lacking);
+    }
+    return 0;
+}

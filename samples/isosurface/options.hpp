@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include "command_line.hpp"
+#include "iso_program.hpp"
+#include "iso_values.hpp"
+#include "output.hpp"
+#include "sorted_faces.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kb
+{
+
+struct IsosurfaceOptions {
+    std::string grid; ///< A file; empty: a grid is generated.
+    bool repair = false;
+    bool has_particles = false; ///< Particles, not a grid.
+    std::string particles;      ///< A file; empty: particles are generated.
+    int particle_count = 200'000;
+    std::string field; ///< Empty: the first.
+    std::vector<IsoRequest> iso_values;
+    int levels = 3; ///< So many iso-values if none was given.
+    int k = 6;
+    std::optional<float> point_size; ///< In the scene, which is the unit sphere.
+    std::optional<float> gap;
+    std::optional<int> smoothing;
+    bool silhouettes = true;
+    OrbitCamera camera;
+    Size size;
+    int repeat = 1;
+    std::string context = "osmesa";
+    OutputPaths outputs;            ///< Only the pictures.
+    std::filesystem::path surfaces; ///< PFM of distance and iso-value.
+};
+
+void declare_options(CLI::App &app, IsosurfaceOptions &options);
+
+/// What no single option can know.
+Status check_options(const IsosurfaceOptions &options);
+
+/// The iso-values for a field of that range, in its units.
+std::vector<IsoValue> choose_iso_values(const IsosurfaceOptions &options, ScalarRange range);
+
+} // namespace kb

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+
+#include "source.hpp"
+
+#include "particles.hpp"
+#include "unit_sphere.hpp"
+
+namespace kb
+{
+
+static Result<TetGrid> make_grid(const IsosurfaceOptions &options)
+{
+    if (options.grid.empty())
+        return make_tet_grid();
+    if (!options.repair)
+        return load_tet_grid(options.grid);
+    GridRepairs repairs;
+    return load_and_repair_tet_grid(options.grid, repairs);
+}
+
+static Result<Source> make_grid_source(const IsosurfaceOptions &options)
+{
+    auto grid = make_grid(options);
+    if (!grid)
+        return grid.error();
+    const auto field = find_field(grid->fields, options.field);
+    if (!field)
+        return field.error();
+    fit_to_unit_sphere(grid->points);
+    Source source;
+    source.range = range_of((*field)->values);
+    source.faces = make_face_mesh(*grid, **field);
+    return source;
+}
+
+static Result<Source> make_particle_source(const IsosurfaceOptions &options)
+{
+    auto set = options.particles.empty()
+                   ? make_particles(static_cast<std::size_t>(options.particle_count))
+                   : load_point_set(options.particles);
+    if (!set)
+        return set.error();
+    const auto field = find_field(set->fields, options.field);
+    if (!field)
+        return field.error();
+    fit_to_unit_sphere(set->points);
+    return Source{Medium::particles,
+                  {},
+                  std::move(set->points),
+                  (*field)->values,
+                  range_of((*field)->values)};
+}
+
+Result<Source> make_source(const IsosurfaceOptions &options)
+{
+    return options.has_particles ? make_particle_source(options) : make_grid_source(options);
+}
+
+Result<std::unique_ptr<FragmentStream>> make_stream(const Gl &gl, const Source &source,
+                                                    float point_size)
+{
+    if (source.medium == Medium::grid)
+        return make_face_stream(gl, source.faces, source.range);
+    return make_particle_stream(gl, source.points, source.scalars, source.range, point_size);
+}
+
+} // namespace kb
