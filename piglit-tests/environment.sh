@@ -1,6 +1,9 @@
 # Running programs on the Mesa of a prefix. To be sourced after scripts/lib/common.sh.
 # shellcheck shell=bash
 
+# shellcheck source=scripts/lib/xvfb.sh
+. "$root/scripts/lib/xvfb.sh"
+
 # use_prefix PREFIX: GL programs started from here on use its Mesa, through libglvnd or not.
 use_prefix() {
     local lib
@@ -25,17 +28,4 @@ check_renderer() {
     "$1"*) ;;
     *) die "asked for $1, but '$renderer' answers" "Is LD_LIBRARY_PATH's Mesa whole?" ;;
     esac
-}
-
-# start_xvfb LOG: an X server of its own for all that is started from here on; it ends with the
-# command.
-start_xvfb() {
-    local display
-    # Xvfb writes the number of the display that it has found free. If it were reset when its last
-    # client leaves, the next one could not connect.
-    exec 8< <(exec Xvfb -displayfd 1 -screen 0 1280x1024x24 -nolisten tcp -noreset 2>"$1")
-    xvfb=$!
-    trap 'kill "$xvfb" 2>/dev/null; cleanup' EXIT
-    read -r -t 30 -u 8 display || die "Xvfb does not start" "See $1"
-    export DISPLAY=:$display
 }
