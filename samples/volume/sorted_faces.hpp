@@ -2,11 +2,11 @@
 
 #pragma once
 
+#include "camera.hpp"
 #include "faces.hpp"
 #include "gl_objects.hpp"
 #include "transfer_function.hpp"
 
-#include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
 #include <cstdint>
@@ -26,32 +26,42 @@ public:
 
     SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range);
 
-    /// Sorts for a view.
-    void sort(const glm::mat4 &view);
+    /// Sorts for a view, and leaves out what covers no center of a pixel in it.
+    void sort(const OrbitCamera &camera, Size size);
 
-    /// Draws all faces in the order of the last sort.
+    /// Draws the faces in the order of the last sort, by one command.
     void draw() const;
 
     std::size_t count() const { return triangles_.size(); }
     ScalarRange range() const { return range_; }
 
-    /// Places in the mesh's triangles, in drawing order.
+    /// What is drawn, in this order: places in the mesh's triangles.
     std::span<const std::uint32_t> order() const { return order_; }
 
 private:
+    /// A vertex on the picture, in 1/256 of a pixel from the center of the first.
+    struct Projected {
+        std::int32_t x;
+        std::int32_t y;
+        float depth; ///< Of the eye. Not positive: x and y mean nothing.
+    };
+
+    void project(const OrbitCamera &camera, Size size);
+
     const Gl *gl_;
     ScalarRange range_;
     VertexArray array_;
     Buffer vertex_buffer_;
-    std::vector<glm::vec4> vertices_; ///< Interior, then boundary ones.
+    Buffer index_buffer_;
+    std::vector<glm::vec4> vertices_; ///< Those of the interior, then those of the boundary.
     std::vector<glm::uvec3> triangles_;
-    std::vector<float> depths_; ///< Of the vertices.
+    std::vector<Projected> projected_;
     std::vector<float> keys_;
+    std::vector<std::uint32_t> visible_;
     std::vector<std::uint32_t> order_;
-    std::vector<glm::uvec3> sorted_; ///< Triangles in drawing order.
 };
 
-/// The extent of a field; {0, 1} if all values are the same, so that all are at 0.
+/// The extent of a field; {0, 1} more than its value if all values are the same.
 ScalarRange range_of(std::span<const float> values);
 
 } // namespace kb
