@@ -18,6 +18,7 @@ static int bytes_of(GLenum internal_format)
     case GL_DEPTH_COMPONENT16:
         return 2;
     case GL_RGBA16F:
+    case GL_RG32F:
         return 8;
     case GL_RGBA32F:
         return 16;

@@ -103,10 +103,9 @@ void SortedFaces::sort(const OrbitCamera &camera, Size size)
         const Projected &b = projected_[triangles_[i].y];
         const Projected &c = projected_[triangles_[i].z];
         const bool before_eye = std::min({a.depth, b.depth, c.depth}) > 0.0F;
-        if (before_eye && !(covers_center(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}),
-                                          size.width) &&
-                            covers_center(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}),
-                                          size.height)))
+        if (before_eye &&
+            !(covers_center(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), size.width) &&
+              covers_center(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), size.height)))
             continue;
         visible_.push_back(static_cast<std::uint32_t>(i));
         keys_.push_back(a.depth + b.depth + c.depth);

@@ -3,6 +3,7 @@
 #include "transfer_function.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
@@ -58,8 +59,8 @@ Result<TransferPoint> parse_point(const std::string &line)
     std::istringstream stream(line);
     std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
     if (words.size() != 5)
-        return Error{fmt::format("value red green blue extinction are wanted, not {} words",
-                                 words.size())};
+        return Error{
+            fmt::format("value red green blue extinction are wanted, not {} words", words.size())};
     std::array<float, 5> numbers{};
     for (std::size_t i = 0; i < words.size(); ++i) {
         char *end = nullptr;
@@ -119,6 +120,8 @@ TransferPoint TransferFunction::at(float value) const
     if (after == points_.end())
         return {value, a.color, a.extinction};
     const TransferPoint &b = *after;
+    if (value == a.value)
+        return a; // The infinite extinction of b begins behind it.
     const float part = (value - a.value) / (b.value - a.value);
     return {value, glm::mix(a.color, b.color, part),
             a.extinction == b.extinction ? a.extinction
@@ -184,8 +187,8 @@ Result<TransferFunction> find_transfer_function(std::string_view name)
         if (named.name == name)
             return parse_transfer_function(named.text, {});
     }
-    return Error{fmt::format("there is no transfer function {} (built in are haze and shells)",
-                             name)};
+    return Error{
+        fmt::format("there is no transfer function {} (built in are haze and shells)", name)};
 }
 
 std::span<const std::string_view> transfer_function_names()

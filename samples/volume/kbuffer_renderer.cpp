@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+//
+//     clear   all entries are 0
+//     draw    the faces, once: the program composites what has left those that wait
+//     flush   a pass over all pixels: the k that still wait, in order
+
+#include "face_program.hpp"
+#include "kbuffer.hpp"
+#include "mesh_buffers.hpp"
+#include "segment_texture.hpp"
+#include "two_nearest.hpp"
+#include "volume_program.hpp"
+#include "volume_renderer.hpp"
+
+#include <fmt/format.h>
+
+namespace kb
+{
+
+namespace
+{
+
+constexpr int table_unit = 8; ///< Of the flush: behind the attachments of the k-buffer.
+
+constexpr const char *face_shader = R"(
+layout(location = 0) out vec4 fragment;
+
+void main()
+{
+    fragment = vec4(ray_distance(), tagged_scalar(), 0.0, 0.0);
+}
+)";
+
+/// Takes the nearest of those that are left, k times.
+std::string make_flush_shader(const KBuffer &kbuffer, int k, float max_length)
+{
+    const auto fetch = [&kbuffer](int entry) {
+        return fmt::format("texelFetch(attachment{}, ivec3(pixel, {}), 0)",
+                           entry % kbuffer.attachments(), entry / kbuffer.attachments());
+    };
+    std::string text = "#version 330\n";
+    for (int a = 0; a < kbuffer.attachments(); ++a)
+        text += fmt::format("uniform sampler2DArray attachment{};\n", a);
+    text += "uniform vec3 background;\n"
+            "layout(location = 0) out vec4 result;\n";
+    text += make_volume_shader(max_length);
+    text += "void main()\n{\n"
+            "    ivec2 pixel = ivec2(gl_FragCoord.xy);\n";
+    text += fmt::format("    start({}, {});\n    vec2 waiting[{}];\n", fetch(0), fetch(1),
+                        2 * waiting_entries(k));
+    text += "    vec4 pair;\n";
+    for (int i = 0; i < waiting_entries(k); ++i)
+        text += fmt::format("    pair = {}; waiting[{}] = pair.xy; waiting[{}] = pair.zw;\n",
+                            fetch(volume_entries(0) + i), 2 * i, 2 * i + 1);
+    text += fmt::format(R"(
+    bool any = front.x > 0.0;
+    for (int i = 0; i < {0}; ++i)
+        any = any || waiting[i].x > 0.0;
+    if (any) {{
+        for (int i = 0; i < {0}; ++i) {{
+            vec2 nearest = waiting[i];
+            for (int j = i + 1; j < {0}; ++j) {{
+                bool swap = waiting[j].x < nearest.x;
+                vec2 other = waiting[j];
+                waiting[j] = swap ? nearest : other;
+                nearest = swap ? other : nearest;
+            }}
+            add(nearest);
+        }}
+    }}
+    result = vec4(color.rgb + (1.0 - color.a) * background, color.a);
+}}
+)",
+                        k);
+    return text;
+}
+
+class KBufferRenderer final : public VolumeRenderer
+{
+public:
+    KBufferRenderer(const Gl &gl, const VolumeSettings &settings, KBuffer kbuffer, Program faces,
+                    ArbProgram program, Program flush, const PreintegratedTable &table)
+        : gl_(gl), size_(settings.size), kbuffer_(std::move(kbuffer)), faces_(std::move(faces)),
+          program_(std::move(program)), flush_(std::move(flush)),
+          table_(make_segment_texture(gl, table)),
+          picture_(make_texture_2d(gl, GL_RGBA32F, size_.width, size_.height)), framebuffer_(gl),
+          empty_(gl)
+    {
+        flush_.use();
+        for (int a = 0; a < kbuffer_.attachments(); ++a)
+            gl.Uniform1i(flush_.uniform(fmt::format("attachment{}", a).c_str()), a);
+        gl.Uniform1i(flush_.uniform("segment_table"), table_unit);
+        gl.Uniform3f(flush_.uniform("background"), settings.background.r, settings.background.g,
+                     settings.background.b);
+        gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+        gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture_.id(),
+                                0);
+    }
+
+    Status draw(const SortedFaces &faces, const OrbitCamera &camera) override
+    {
+        kbuffer_.clear(glm::vec4(0.0F));
+        gl_.Disable(GL_DEPTH_TEST);
+        gl_.BindTexture(GL_TEXTURE_3D, table_.id());
+        program_.bind();
+        use_face_program(gl_, faces_, camera, size_);
+        gl_.Enable(GL_KBUFFER_PROGRAM_MESA);
+        faces.draw();
+        gl_.Disable(GL_KBUFFER_PROGRAM_MESA);
+        flush();
+        return check_gl(gl_, "drawing the volume");
+    }
+
+    GLuint framebuffer() const override { return framebuffer_.id(); }
+    int passes() const override { return 1; }
+    int bytes_per_pixel() const override { return 16 * kbuffer_.attachments() * kbuffer_.layers(); }
+
+private:
+    void flush() const
+    {
+        gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+        gl_.Viewport(0, 0, size_.width, size_.height);
+        kbuffer_.bind_textures();
+        gl_.ActiveTexture(GL_TEXTURE0 + table_unit);
+        gl_.BindTexture(GL_TEXTURE_3D, table_.id());
+        gl_.ActiveTexture(GL_TEXTURE0);
+        flush_.use();
+        draw_full_screen(gl_, empty_);
+    }
+
+    const Gl &gl_;
+    Size size_;
+    KBuffer kbuffer_;
+    Program faces_;
+    ArbProgram program_;
+    Program flush_;
+    Texture table_;
+    Texture picture_;
+    Framebuffer framebuffer_;
+    VertexArray empty_;
+};
+
+} // namespace
+
+Result<std::unique_ptr<VolumeRenderer>> make_kbuffer_renderer(const Gl &gl,
+                                                              const VolumeSettings &settings)
+{
+    auto kbuffer = KBuffer::make(gl, GL_RGBA32F, settings.size, volume_entries(settings.k));
+    if (!kbuffer)
+        return kbuffer.error();
+    auto faces = make_face_program(gl, face_shader);
+    if (!faces)
+        return faces.error();
+    auto program = ArbProgram::make(gl, GL_KBUFFER_PROGRAM_MESA,
+                                    make_volume_program(settings.k, settings.max_length));
+    if (!program)
+        return program.error();
+    auto flush = Program::make(gl, full_screen_vertex_shader,
+                               make_flush_shader(*kbuffer, settings.k, settings.max_length));
+    if (!flush)
+        return flush.error();
+    const PreintegratedTable table(settings.transfer, settings.max_length);
+    auto renderer =
+        std::make_unique<KBufferRenderer>(gl, settings, std::move(*kbuffer), std::move(*faces),
+                                          std::move(*program), std::move(*flush), table);
+    if (auto complete = check_framebuffer(gl); !complete)
+        return complete.error();
+    return std::unique_ptr<VolumeRenderer>(std::move(renderer));
+}
+
+} // namespace kb

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+//
+// Direct volume rendering of a tetrahedral grid in ONE pass over its faces. They are drawn nearly
+// front to back; a k-buffer program puts the fragments of every pixel in order and composites the
+// segments of its ray, by a table of the integrals over them.
+//
+//     sort    SortedFaces: the faces by centroid, in linear time
+//     draw    make_volume_program: two nearest fragments, table lookup, composition
+//     flush   the fragments that still wait
+
+#include "context.hpp"
+#include "kbuffer.hpp"
+#include "output.hpp"
+#include "timing.hpp"
+#include "volume_options.hpp"
+#include "volume_renderer.hpp"
+#include "volume_report.hpp"
+#include "volume_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+
+namespace
+{
+
+/// What cannot go on, and the exit status that says whose fault it is.
+struct Failure {
+    kb::Error error;
+    int status;
+};
+
+kb::Result<std::unique_ptr<kb::VolumeRenderer>>
+make_renderer(const kb::Gl &gl, const kb::VolumeOptions &options, const kb::VolumeScene &scene)
+{
+    const kb::VolumeSettings settings{options.size, options.k, scene.transfer, scene.max_length,
+                                      options.background};
+    if (options.exact)
+        return kb::make_exact_renderer(gl, settings);
+    if (auto supported = kb::require_kbuffer_program(gl); !supported)
+        return supported.error();
+    return kb::make_kbuffer_renderer(gl, settings);
+}
+
+std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &scene)
+{
+    const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
+
+    auto context = kb::make_context(options.context, options.size, "volume");
+    if (!context)
+        return lacking(context.error());
+    const kb::Gl &gl = (*context)->gl();
+    auto renderer = make_renderer(gl, options, scene);
+    if (!renderer)
+        return lacking(renderer.error());
+    kb::SortedFaces faces(gl, scene.faces, scene.range);
+
+    kb::VolumeReport report;
+    const auto draw = [&]() -> kb::Status {
+        kb::Status drawn = kb::ok;
+        const double sort =
+            kb::milliseconds(gl, [&] { faces.sort(options.scene.camera, options.size); });
+        const double rest =
+            kb::milliseconds(gl, [&] { drawn = (*renderer)->draw(faces, options.scene.camera); });
+        report.frames.push_back({sort, rest});
+        return drawn;
+    };
+    for (int i = 0; i < options.repeat; ++i) {
+        if (auto drawn = draw(); !drawn)
+            return lacking(drawn.error());
+    }
+
+    const kb::ImageRgbaF image = kb::read_color(gl, (*renderer)->framebuffer(), options.size);
+    if (auto written = kb::write_outputs({options.picture, options.floats, {}}, image, {});
+        !written)
+        return Failure{written.error(), kb::exit_bad_input};
+    report.faces = faces.count();
+    report.drawn = faces.order().size();
+    report.passes = (*renderer)->passes();
+    report.bytes_per_pixel = (*renderer)->bytes_per_pixel();
+    if (!options.json.empty()) {
+        if (auto written = kb::write_report(options.json, options, scene, report); !written)
+            return Failure{written.error(), kb::exit_bad_input};
+    }
+    kb::print_report(options, report);
+
+    while ((*context)->present((*renderer)->framebuffer(), options.size, options.scene.camera)) {
+        if (auto drawn = draw(); !drawn)
+            return lacking(drawn.error());
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    kb::VolumeOptions options;
+    CLI::App app("Draws a tetrahedral grid as a volume, in one pass over its faces: a k-buffer "
+                 "program\n(GL_MESA_kbuffer_program) puts fragments in order and composites the "
+                 "segments between them.",
+                 "volume");
+    kb::declare_options(app, options);
+    if (const auto status = kb::parse_command_line(app, argc, argv))
+        return *status;
+    if (auto writable = kb::check_writable({options.picture, options.floats, {}}); !writable)
+        return kb::fail(app, writable.error(), kb::exit_bad_input);
+
+    try {
+        const auto scene = kb::make_volume_scene(options.scene);
+        if (!scene)
+            return kb::fail(app, scene.error(), kb::exit_bad_input);
+        if (const auto failure = run(options, *scene))
+            return kb::fail(app, failure->error, failure->status);
+    } catch (const std::bad_alloc &) {
+        return kb::fail(app, kb::Error{"there is not enough memory for --grid, --size and --k"},
+                        kb::exit_lacking);
+    }
+    return 0;
+}

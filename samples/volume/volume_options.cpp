@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+
+#include "volume_options.hpp"
+
+#include "volume_program.hpp"
+
+#include <fmt/format.h>
+
+namespace kb
+{
+
+static void add_number(CLI::App &app, const char *name, float &value, double low, double high,
+                       const char *help)
+{
+    app.add_option(name, value, help)
+        ->check([=](const std::string &text) { return check_number(text, low, high); })
+        ->type_name("X")
+        ->capture_default_str();
+}
+
+static void declare_scene_options(CLI::App &app, VolumeSceneOptions &options)
+{
+    app.add_option("--grid", options.grid,
+                   "Legacy VTK file of tetrahedra; without, a grid is generated")
+        ->type_name("FILE");
+    app.add_option("--cubes", options.cubes,
+                   "Cubes along an edge of the generated grid, each in 5 tetrahedra")
+        ->check(CLI::Range(1, 256))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_flag("--repair", options.repair,
+                 "Leave cells without volume out of the file's grid and turn inverted ones");
+    app.add_option("--field", options.field, "Scalar field of the grid, by default the first")
+        ->type_name("NAME");
+    app.add_option("--transfer", options.transfer,
+                   "Transfer function: haze, shells, or a file of lines of value, red, green, blue "
+                   "and extinction")
+        ->type_name("NAME|FILE")
+        ->capture_default_str();
+    app.add_option("--transfer-points", options.transfer_points,
+                   "Lines of such a file, with ; between them")
+        ->type_name("TEXT");
+    add_number(app, "--azimuth", options.camera.azimuth, -360.0, 360.0,
+               "Degrees about the vertical axis");
+    add_number(app, "--elevation", options.camera.elevation, -90.0, 90.0, "Degrees from above");
+    add_number(app, "--distance", options.camera.distance, 1.02, 20.0,
+               "Of the eye from the middle of the grid, which has radius 1");
+    add_number(app, "--field-of-view", options.camera.field_of_view, 1.0, 120.0,
+               "Degrees, of the shorter side of the picture");
+}
+
+void declare_options(CLI::App &app, VolumeOptions &options)
+{
+    declare_scene_options(app, options.scene);
+    app.add_option("--k", options.k,
+                   fmt::format("Fragments that wait in the k-buffer, 1 to {} (with --exact: that a "
+                               "pass takes)",
+                               max_waiting(64)))
+        ->check(CLI::Range(1, max_waiting(64)))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_flag("--exact", options.exact,
+                 "Put every fragment in its place, in as many passes as it takes");
+    app.add_option_function<std::vector<float>>(
+           "--background",
+           [&options](const std::vector<float> &c) {
+               options.background = {c[0], c[1], c[2]};
+           },
+           "Red, green and blue from 0 to 1")
+        ->expected(3)
+        ->delimiter(',')
+        ->check([](const std::string &text) { return check_number(text, 0.0, 1.0); })
+        ->type_name("R,G,B")
+        ->default_str("1,1,1");
+    add_context_option(app, options.context);
+    add_size_option(app, options.size);
+    app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")
+        ->check(CLI::Range(1, 10'000))
+        ->type_name("N");
+    app.add_option("--out", options.picture, "Write the picture")->type_name("FILE.png");
+    app.add_option("--float-out", options.floats, "Write the picture before rounding")
+        ->type_name("FILE.pfm");
+    app.add_option("--json", options.json, "Write what was drawn and the times of each frame")
+        ->type_name("FILE.json");
+}
+
+} // namespace kb

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include "volume_options.hpp"
+#include "volume_scene.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+namespace kb
+{
+
+struct VolumeReport {
+    struct Frame {
+        double sort; ///< Milliseconds, on the CPU.
+        double draw; ///< Milliseconds, with what follows the drawing of the faces.
+    };
+    std::vector<Frame> frames;
+    std::size_t faces = 0;
+    std::size_t drawn = 0; ///< Faces without those that cover no pixel.
+    int passes = 0;
+    int bytes_per_pixel = 0;
+};
+
+/// One line for people.
+void print_report(const VolumeOptions &options, const VolumeReport &report);
+
+/// What other renderers need to draw the same picture, and the times.
+Status write_report(const std::filesystem::path &path, const VolumeOptions &options,
+                    const VolumeScene &scene, const VolumeReport &report);
+
+} // namespace kb

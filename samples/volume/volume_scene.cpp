@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+
+#include "volume_scene.hpp"
+
+#include "sorted_faces.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kb
+{
+
+static Result<TetGrid> make_grid(const VolumeSceneOptions &options)
+{
+    if (options.grid.empty())
+        return make_tet_grid({.cubes = options.cubes});
+    GridRepairs repairs;
+    return options.repair ? load_and_repair_tet_grid(options.grid, repairs)
+                          : load_tet_grid(options.grid);
+}
+
+static Result<TransferFunction> make_transfer(const VolumeSceneOptions &options, ScalarRange range)
+{
+    if (!options.transfer_points.empty()) {
+        std::string text = options.transfer_points;
+        std::ranges::replace(text, ';', '\n');
+        return parse_transfer_function(text, range);
+    }
+    const auto names = transfer_function_names();
+    if (std::ranges::find(names, options.transfer) != names.end())
+        return find_transfer_function(options.transfer);
+    return load_transfer_function(options.transfer, range);
+}
+
+/// A segment lies in a cell: it is no longer than the cell's longest edge.
+static float longest_edge(const FaceMesh &mesh)
+{
+    float longest = 0.0F;
+    for (const glm::uvec3 &triangle : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            longest = std::max(longest, glm::distance(mesh.positions[triangle[i]],
+                                                      mesh.positions[triangle[(i + 1) % 3]]));
+        }
+    }
+    return longest;
+}
+
+Result<VolumeScene> make_volume_scene(const VolumeSceneOptions &options)
+{
+    auto grid = make_grid(options);
+    if (!grid)
+        return grid.error();
+    const auto field = find_field(*grid, options.field);
+    if (!field)
+        return field.error();
+    const ScalarRange range = range_of((*field)->values);
+    auto transfer = make_transfer(options, range);
+    if (!transfer)
+        return transfer.error();
+
+    glm::vec3 low = grid->points.front();
+    glm::vec3 high = low;
+    for (const glm::vec3 &p : grid->points) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::vec3 center = 0.5F * (low + high);
+    float radius = 0.0F;
+    for (const glm::vec3 &p : grid->points)
+        radius = std::max(radius, glm::distance(p, center));
+    fit_to_unit_sphere(*grid);
+
+    FaceMesh faces = make_face_mesh(*grid, **field);
+    const float max_length = longest_edge(faces);
+    const std::string name = (*field)->name;
+    return VolumeScene{std::move(*grid),     name,      range, center, radius, std::move(faces),
+                       std::move(*transfer), max_length};
+}
+
+} // namespace kb

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include "faces.hpp"
+#include "transfer_function.hpp"
+#include "volume_options.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <string>
+
+namespace kb
+{
+
+/// What is drawn: the grid in the unit sphere.
+struct VolumeScene {
+    TetGrid grid;
+    std::string field;
+    ScalarRange range; ///< Of the field.
+    glm::vec3 center;  ///< Of the grid as it came: a point p is now (p - center) / radius.
+    float radius;
+    FaceMesh faces;
+    TransferFunction transfer; ///< Normalized to the range.
+    float max_length;          ///< Of a segment of a ray in a cell.
+};
+
+/// Errors are those of the input.
+Result<VolumeScene> make_volume_scene(const VolumeSceneOptions &options);
+
+} // namespace kb
