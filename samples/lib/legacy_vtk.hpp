@@ -8,27 +8,25 @@
 #include "tet_grid.hpp"
 
 #include <cstdint>
-#include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace kb
 {
 
-enum class VtkDataSet { unstructured_grid, polygonal_data };
-
 struct LegacyVtk {
-    VtkDataSet data_set = VtkDataSet::unstructured_grid;
+    bool is_polygonal = false; ///< Polygonal data, not an unstructured grid.
     std::vector<glm::vec3> points;
-    /// The points of cell i are connectivity[offsets[i]] to connectivity[offsets[i + 1]], all of
-    /// them there. Those of polygonal data are passed over.
+    /// The points of cell i are connectivity[offsets[i]] to connectivity[offsets[i + 1] - 1]: all
+    /// these elements are there. Vertices, lines and polygons of polygonal data are passed over.
     std::vector<std::int64_t> offsets;
     std::vector<std::int64_t> connectivity;
-    std::vector<int> cell_types;
+    std::vector<std::int64_t> cell_types;
     std::vector<ScalarField> point_fields; ///< Of arrays with several components the magnitude.
     bool has_cell_data = false;
 };
 
-/// Reads versions 1 to 5 of the format, ASCII and binary.
-Result<LegacyVtk> read_legacy_vtk(const std::filesystem::path &path);
+/// Understands versions 1 to 5 of the format, ASCII and binary.
+Result<LegacyVtk> parse_legacy_vtk(std::string_view text);
 
 } // namespace kb

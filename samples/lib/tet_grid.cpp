@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 
 #include "tet_grid.hpp"
-#include "unit_sphere.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -123,9 +122,9 @@ Result<const ScalarField *> find_field(const std::vector<ScalarField> &fields,
     return Error{fmt::format("there is no scalar field '{}', but {}", name, names)};
 }
 
-void fit_to_unit_sphere(TetGrid &grid)
+BoundingSphere fit_to_unit_sphere(TetGrid &grid)
 {
-    fit_to_unit_sphere(std::span(grid.points));
+    return fit_to_unit_sphere(std::span(grid.points));
 }
 
 } // namespace kb

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "result.hpp"
+#include "unit_sphere.hpp"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -25,7 +26,7 @@ struct ScalarField {
     std::vector<float> values; ///< One a point.
 };
 
-/// Cells are oriented as VTK's: seen from point 3, points 0, 1, 2 go clockwise, so that
+/// Cells are oriented as VTK's: seen from point 3, points 0, 1, 2 go counterclockwise, so that
 /// dot(cross(p1 - p0, p2 - p0), p3 - p0) is positive.
 struct TetGrid {
     std::vector<glm::vec3> points;
@@ -54,6 +55,9 @@ Status check_point_set(const PointSet &set);
 /// Reads a legacy VTK file, ASCII or binary, with an unstructured grid of tetrahedra. The fields
 /// are the arrays of its points; of a vector, the magnitude. The grid has passed check_tet_grid.
 Result<TetGrid> load_tet_grid(const std::filesystem::path &path);
+
+/// The same, of a file's content.
+Result<TetGrid> parse_tet_grid(std::string_view text);
 
 /// What repair_tet_grid did.
 struct GridRepairs {
@@ -106,8 +110,8 @@ TetGrid make_tet_grid(const GeneratedGrid &wanted = {});
 float generated_wave(glm::vec3 p);
 
 /// Moves and scales the grid so that its bounding sphere about the middle of its box is the unit
-/// sphere. Rounding moves points by 1e-7 at most; cells thinner than that may become flat or
-/// inverted.
-void fit_to_unit_sphere(TetGrid &grid);
+/// sphere; the sphere that it had. Rounding moves points by 1e-7 at most; cells thinner than that
+/// may become flat or inverted.
+BoundingSphere fit_to_unit_sphere(TetGrid &grid);
 
 } // namespace kb

@@ -7,7 +7,8 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
+#include <fstream>
+#include <iterator>
 #include <utility>
 
 namespace kb
@@ -15,19 +16,21 @@ namespace kb
 
 static constexpr int vtk_tetra = 10;
 
-static std::string cell_type_name(int type)
+static std::string cell_type_name(std::int64_t type)
 {
+    // VTK's numbers; a pixel and a voxel are a rectangle and a box along the axes.
     static constexpr std::array<const char *, 15> names{
         nullptr,      "a vertex",         "a set of vertices", "a line",  "a line",
         "a triangle", "a triangle strip", "a polygon",         "a pixel", "a quadrilateral",
         nullptr,      "a voxel",          "a hexahedron",      "a wedge", "a pyramid"};
-    const bool is_known = type >= 0 && static_cast<std::size_t>(type) < names.size() && names[type];
-    return fmt::format("{} (type {})", is_known ? names[type] : "no tetrahedron", type);
+    const auto place = static_cast<std::size_t>(type);
+    const char *const name = place < names.size() ? names[place] : nullptr;
+    return fmt::format("{} (type {})", name ? name : "no tetrahedron", type);
 }
 
 static Result<TetGrid> make_grid(LegacyVtk &&vtk)
 {
-    if (vtk.data_set != VtkDataSet::unstructured_grid)
+    if (vtk.is_polygonal)
         return Error{"its data set is POLYDATA, not UNSTRUCTURED_GRID: a surface has no cells"};
     const std::size_t cells = vtk.offsets.empty() ? 0 : vtk.offsets.size() - 1;
     if (vtk.cell_types.size() != cells)
@@ -60,46 +63,79 @@ static Result<TetGrid> make_grid(LegacyVtk &&vtk)
     return grid;
 }
 
-static Result<TetGrid> load(const std::filesystem::path &path, GridRepairs *repairs)
+static Result<TetGrid> parse(std::string_view text, GridRepairs *repairs)
 {
-    const auto fail = [&path](const Error &error) {
-        return Error{fmt::format("cannot read the grid {}: {}", path.string(), error.message)};
-    };
-    auto vtk = read_legacy_vtk(path);
+    auto vtk = parse_legacy_vtk(text);
     if (!vtk)
-        return fail(vtk.error());
+        return vtk.error();
     auto grid = make_grid(std::move(*vtk));
     if (!grid)
-        return fail(grid.error());
+        return grid;
     if (repairs)
         *repairs = repair_tet_grid(*grid);
     if (auto checked = check_tet_grid(*grid); !checked)
-        return fail(checked.error());
+        return checked.error();
     return grid;
+}
+
+static Result<PointSet> parse_point_set(std::string_view text)
+{
+    auto vtk = parse_legacy_vtk(text);
+    if (!vtk)
+        return vtk.error();
+    PointSet set{std::move(vtk->points), std::move(vtk->point_fields)};
+    if (auto checked = check_point_set(set); !checked)
+        return checked.error();
+    return set;
+}
+
+static Result<std::string> read_file(const std::filesystem::path &path)
+{
+    std::error_code code;
+    if (!std::filesystem::exists(path, code))
+        return Error{"no such file"};
+    if (std::filesystem::is_directory(path, code))
+        return Error{"it is a directory"};
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return Error{"it cannot be opened"};
+    return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+template <class Parse>
+static auto load(const char *what, const std::filesystem::path &path, const Parse &parse_text)
+    -> decltype(parse_text(std::string()))
+{
+    const auto fail = [&](const Error &error) {
+        return Error{fmt::format("cannot read the {} {}: {}", what, path.string(), error.message)};
+    };
+    const auto text = read_file(path);
+    if (!text)
+        return fail(text.error());
+    auto loaded = parse_text(*text);
+    if (!loaded)
+        return fail(loaded.error());
+    return loaded;
+}
+
+Result<TetGrid> parse_tet_grid(std::string_view text)
+{
+    return parse(text, nullptr);
 }
 
 Result<TetGrid> load_tet_grid(const std::filesystem::path &path)
 {
-    return load(path, nullptr);
+    return load("grid", path, parse_tet_grid);
 }
 
 Result<TetGrid> load_and_repair_tet_grid(const std::filesystem::path &path, GridRepairs &repairs)
 {
-    return load(path, &repairs);
+    return load("grid", path, [&](std::string_view text) { return parse(text, &repairs); });
 }
 
 Result<PointSet> load_point_set(const std::filesystem::path &path)
 {
-    const auto fail = [&path](const Error &error) {
-        return Error{fmt::format("cannot read the points {}: {}", path.string(), error.message)};
-    };
-    auto vtk = read_legacy_vtk(path);
-    if (!vtk)
-        return fail(vtk.error());
-    PointSet set{std::move(vtk->points), std::move(vtk->point_fields)};
-    if (auto checked = check_point_set(set); !checked)
-        return fail(checked.error());
-    return set;
+    return load("points", path, parse_point_set);
 }
 
 } // namespace kb

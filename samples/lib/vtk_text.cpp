@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+
+#include "vtk_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <concepts>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+namespace kb
+{
+
+static const char *const blanks = " \t\r";
+
+std::string_view first_word(std::string_view line)
+{
+    line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+    return line.substr(0, line.find_first_of(blanks));
+}
+
+std::string quoted(std::string_view word)
+{
+    std::string text(word.substr(0, 40));
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
+    return '\'' + text + '\'';
+}
+
+bool is_keyword(std::string_view word, std::string_view keyword)
+{
+    const auto same = [](char a, char b) {
+        return (a >= 'a' && a <= 'z' ? a - 'a' + 'A' : a) == b;
+    };
+    return std::ranges::equal(word, keyword, same);
+}
+
+template <class T>
+static std::optional<T> to_number(std::string_view word)
+{
+    if (word.starts_with('+'))
+        word.remove_prefix(1);
+    T value{};
+    const char *const end = word.data() + word.size();
+    const auto result = std::from_chars(word.data(), end, value);
+    if (result.ptr != end || word.empty())
+        return std::nullopt;
+    if constexpr (std::floating_point<T>) {
+        // Too small for the type, or too large: the check of the grid finds what is not finite.
+        if (result.ec == std::errc::result_out_of_range)
+            return word.find_first_of("eE") != std::string_view::npos &&
+                           word.find("-", 1) != std::string_view::npos
+                       ? T{}
+                       : std::numeric_limits<T>::infinity();
+    }
+    return result.ec == std::errc{} ? std::optional(value) : std::nullopt;
+}
+
+void VtkText::fail(const std::string &reason)
+{
+    if (error_.empty())
+        error_ = reason;
+    rest_ = {};
+}
+
+std::string_view VtkText::line()
+{
+    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    const std::string_view taken = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    return taken;
+}
+
+std::string_view VtkText::word()
+{
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size()));
+    const std::string_view taken = rest_.substr(0, rest_.find_first_of(" \t\r\n"));
+    rest_.remove_prefix(taken.size());
+    return taken;
+}
+
+std::string_view VtkText::next_on_this_line() const
+{
+    return first_word(rest_.substr(0, rest_.find('\n')));
+}
+
+std::string_view VtkText::next_line_begin() const
+{
+    VtkText next(rest_);
+    next.line();
+    return next.next_on_this_line();
+}
+
+std::size_t VtkText::count(const char *of_what)
+{
+    const std::string_view digits = word();
+    if (const auto number = to_number<std::int64_t>(digits); number && *number >= 0)
+        return static_cast<std::size_t>(*number);
+    fail(digits.empty() ? "it ends early"
+                        : fmt::format("the number of {} is {}", of_what, quoted(digits)));
+    return 0;
+}
+
+template <class Stored, class T>
+std::vector<T> VtkText::binary_numbers(std::size_t wanted)
+{
+    line(); // The block begins after the end of the line that announces it.
+    if (wanted > rest_.size() / sizeof(Stored)) {
+        fail(fmt::format("a block of {} binary numbers is cut off", wanted));
+        return {};
+    }
+    std::vector<T> numbers(wanted);
+    for (std::size_t i = 0; i < wanted; ++i) {
+        std::array<char, sizeof(Stored)> bytes{};
+        std::memcpy(bytes.data(), rest_.data() + i * sizeof(Stored), sizeof(Stored));
+        if constexpr (std::endian::native == std::endian::little)
+            std::ranges::reverse(bytes);
+        numbers[i] = static_cast<T>(std::bit_cast<Stored>(bytes));
+    }
+    rest_.remove_prefix(wanted * sizeof(Stored));
+    return numbers;
+}
+
+template <class Stored, class T>
+std::vector<T> VtkText::ascii_numbers(std::size_t wanted)
+{
+    // Each number needs a digit and a blank.
+    if (wanted > rest_.size() / 2 + 1) {
+        fail("it ends early");
+        return {};
+    }
+    // Characters are written as numbers.
+    using Written = std::conditional_t<sizeof(Stored) == 1, int, Stored>;
+    std::vector<T> numbers(wanted);
+    for (T &number : numbers) {
+        const std::string_view digits = word();
+        const auto read = to_number<Written>(digits);
+        if (!read) {
+            fail(digits.empty() ? "it ends early"
+                                : fmt::format("{} is no number of its type", quoted(digits)));
+            return {};
+        }
+        number = static_cast<T>(*read);
+    }
+    return numbers;
+}
+
+template <class Stored, class T>
+std::vector<T> VtkText::stored_as(std::size_t wanted)
+{
+    return is_binary ? binary_numbers<Stored, T>(wanted) : ascii_numbers<Stored, T>(wanted);
+}
+
+template <class T>
+std::vector<T> VtkText::numbers(std::string_view type, std::size_t wanted)
+{
+    if (is_keyword(type, "INT") || is_keyword(type, "VTKIDTYPE") ||
+        is_keyword(type, "VTKTYPEINT32"))
+        return stored_as<std::int32_t, T>(wanted);
+    if (is_keyword(type, "UNSIGNED_INT"))
+        return stored_as<std::uint32_t, T>(wanted);
+    if (is_keyword(type, "LONG") || is_keyword(type, "VTKTYPEINT64"))
+        return stored_as<std::int64_t, T>(wanted);
+    if constexpr (std::floating_point<T>) {
+        if (is_keyword(type, "FLOAT"))
+            return stored_as<float, T>(wanted);
+        if (is_keyword(type, "DOUBLE"))
+            return stored_as<double, T>(wanted);
+        if (is_keyword(type, "UNSIGNED_LONG") || is_keyword(type, "VTKTYPEUINT64"))
+            return stored_as<std::uint64_t, T>(wanted);
+        if (is_keyword(type, "SHORT"))
+            return stored_as<std::int16_t, T>(wanted);
+        if (is_keyword(type, "UNSIGNED_SHORT"))
+            return stored_as<std::uint16_t, T>(wanted);
+        if (is_keyword(type, "CHAR"))
+            return stored_as<signed char, T>(wanted);
+        if (is_keyword(type, "UNSIGNED_CHAR"))
+            return stored_as<unsigned char, T>(wanted);
+    }
+    fail(type.empty() ? "it ends early" : fmt::format("it has numbers of type {}", quoted(type)));
+    return {};
+}
+
+std::vector<float> VtkText::floats(std::string_view type, std::size_t items, std::size_t components)
+{
+    // Such a product may be larger than any number; no file is.
+    if (components != 0 && items > rest_.size() / components) {
+        fail("it ends early");
+        return {};
+    }
+    return numbers<float>(type, items * components);
+}
+
+std::vector<std::int64_t> VtkText::integers(std::string_view type, std::size_t items)
+{
+    return numbers<std::int64_t>(type, items);
+}
+
+} // namespace kb
