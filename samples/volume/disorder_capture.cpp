@@ -3,68 +3,98 @@
 #include "disorder_capture.hpp"
 
 #include "depth_peeling.hpp"
+#include "face_program.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdint>
 #include <limits>
 
 namespace kb
 {
 
-static constexpr int layers_a_pass = 32;
-static constexpr std::uint32_t no_fragment = std::numeric_limits<std::uint32_t>::max();
-
-/// Puts the arrivals of a pass behind those of earlier ones, pixel by pixel.
-static void append_layers(const Gl &gl, const DepthPeeling &peeling,
-                          std::vector<std::uint32_t> &layers,
-                          std::vector<std::vector<std::uint32_t>> &pixels)
+namespace
 {
+
+constexpr int layers_a_pass = 32;
+constexpr std::uint32_t no_fragment = std::numeric_limits<std::uint32_t>::max();
+
+/// A fragment arrives in the order of the triangles of the draw call.
+constexpr const char *arrival_shader = R"(
+layout(location = 0) out uint arrival;
+
+void main()
+{
+    arrival = uint(gl_PrimitiveID);
+}
+)";
+
+/// What the fragments of each pixel say, by their depth.
+using Arrivals = std::vector<std::vector<std::uint32_t>>;
+
+/// Puts the layers of a pass behind those of the passes before.
+void append_layers(const Gl &gl, const DepthPeeling &peeling, Arrivals &pixels)
+{
+    std::vector<std::uint32_t> layers(pixels.size() * layers_a_pass);
     gl.BindTexture(GL_TEXTURE_2D_ARRAY, peeling.color().id());
     gl.GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, layers.data());
-    for (std::size_t i = 0; i < layers.size(); ++i)
+    for (std::size_t i = 0; i < layers.size(); ++i) {
         if (layers[i] != no_fragment)
             pixels[i % pixels.size()].push_back(layers[i]);
+    }
 }
 
-Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t triangles,
-                                  const std::function<void()> &draw)
+Result<Arrivals> capture_arrivals(const Gl &gl, const SortedFaces &faces, const OrbitCamera &camera,
+                                  Size size)
 {
-    auto peeling =
-        DepthPeeling::make(gl, {.size = size, .count = layers_a_pass, .color_formats = {GL_R32UI}});
+    const auto program = make_face_program(gl, arrival_shader);
+    if (!program)
+        return program.error();
+    PeelingLayers layers;
+    layers.size = size;
+    layers.count = layers_a_pass;
+    layers.color_formats = {GL_R32UI};
+    auto peeling = DepthPeeling::make(gl, layers);
     if (!peeling)
         return peeling.error();
 
-    std::vector<std::vector<std::uint32_t>> pixels(static_cast<std::size_t>(size.width) *
-                                                   static_cast<std::size_t>(size.height));
-    std::vector<std::uint32_t> layers(pixels.size() * layers_a_pass);
-    const std::array<GLuint, 4> clear{no_fragment};
-    auto started = peeling->restart();
-    while (started) {
+    Arrivals pixels(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
+    const std::array<GLuint, 4> empty{no_fragment};
+    Status status = peeling->restart();
+    for (bool more = true; status && more;) {
         peeling->clear();
-        gl.ClearBufferuiv(GL_COLOR, 0, clear.data());
+        gl.ClearBufferuiv(GL_COLOR, 0, empty.data());
+        use_face_program(gl, *program, camera, size);
         gl.Enable(GL_DEPTH_PEELING_MESA);
-        draw();
+        faces.draw();
         gl.Disable(GL_DEPTH_PEELING_MESA);
-        append_layers(gl, *peeling, layers, pixels);
-        if (!peeling->overflow())
-            break;
-        // Each triangle has one fragment of a pixel at most; the last pass may find nothing.
-        const auto taken = static_cast<std::size_t>(peeling->first_layer()) + layers_a_pass;
-        if (taken > triangles + layers_a_pass)
-            return Error{fmt::format("{} layers have not come to the end of {} triangles: this is "
-                                     "an error of the driver",
-                                     taken, triangles)};
-        started = peeling->advance();
+        append_layers(gl, *peeling, pixels);
+        more = peeling->overflow();
+        // A face makes one fragment of a pixel at most.
+        if (more && static_cast<std::size_t>(peeling->first_layer()) > faces.count())
+            return Error{fmt::format("{} layers have not come to the end of {} faces: this is an "
+                                     "error of the driver",
+                                     peeling->first_layer() + layers_a_pass, faces.count())};
+        if (more)
+            status = peeling->advance();
     }
-    if (!started)
-        return started.error();
+    if (!status)
+        return status.error();
     if (auto drawn = check_gl(gl, "capturing the order of fragments"); !drawn)
         return drawn.error();
+    return pixels;
+}
 
+} // namespace
+
+Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, const OrbitCamera &camera,
+                                  Size size)
+{
+    const auto pixels = capture_arrivals(gl, faces, camera, size);
+    if (!pixels)
+        return pixels.error();
     Disorder disorder;
-    for (const std::vector<std::uint32_t> &arrivals : pixels)
+    for (const std::vector<std::uint32_t> &arrivals : *pixels)
         disorder.add_pixel(arrivals);
     return disorder;
 }

@@ -9,8 +9,10 @@
 //     flush   the fragments that still wait
 
 #include "context.hpp"
+#include "disorder_report.hpp"
 #include "kbuffer.hpp"
 #include "output.hpp"
+#include "subdivide.hpp"
 #include "timing.hpp"
 #include "volume_options.hpp"
 #include "volume_renderer.hpp"
@@ -53,7 +55,11 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
     auto renderer = make_renderer(gl, options, scene);
     if (!renderer)
         return lacking(renderer.error());
-    kb::SortedFaces faces(gl, scene.faces, scene.range);
+    kb::SortedFaces faces(gl,
+                          options.budget > 1.0
+                              ? kb::subdivide(scene.faces, options.budget, options.split_first)
+                              : scene.faces,
+                          scene.range);
 
     kb::VolumeReport report;
     const auto draw = [&]() -> kb::Status {
@@ -78,6 +84,12 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
     report.drawn = faces.order().size();
     report.passes = (*renderer)->passes();
     report.bytes_per_pixel = (*renderer)->bytes_per_pixel();
+    if (options.measure_disorder) {
+        auto disorder = kb::measure_disorder(gl, options, scene, faces, image);
+        if (!disorder)
+            return lacking(disorder.error());
+        report.disorder = std::move(*disorder);
+    }
     if (!options.json.empty()) {
         if (auto written = kb::write_report(options.json, options, scene, report); !written)
             return Failure{written.error(), kb::exit_bad_input};

@@ -61,6 +61,24 @@ void declare_options(CLI::App &app, VolumeOptions &options)
         ->capture_default_str();
     app.add_flag("--exact", options.exact,
                  "Put every fragment in its place, in as many passes as it takes");
+    app.add_option("--budget", options.budget,
+                   "Subdivide faces until there are this many times as many, for less disorder")
+        ->check([](const std::string &text) { return check_number(text, 1.0, 64.0); })
+        ->type_name("X")
+        ->default_str("1");
+    app.add_option_function<std::string>(
+           "--split-first",
+           [&options](const std::string &word) {
+               options.split_first = word == "longest" ? SplitFirst::longest : SplitFirst::thinnest;
+           },
+           "Triangles that --budget splits first: those with the longest edge, or the thinnest, "
+           "by the ratio of longest to shortest edge")
+        ->check(CLI::IsMember({"longest", "thinnest"}))
+        ->type_name("NAME")
+        ->default_str("longest");
+    app.add_flag(
+        "!--no-disorder", options.measure_disorder,
+        "Do not measure how far from depth order fragments arrive, and what that does to colors");
     app.add_option_function<std::vector<float>>(
            "--background",
            [&options](const std::vector<float> &c) {

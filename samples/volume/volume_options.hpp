@@ -4,6 +4,7 @@
 
 #include "camera.hpp"
 #include "command_line.hpp"
+#include "subdivide.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -29,6 +30,9 @@ struct VolumeOptions {
     Size size;
     int k = 6;
     bool exact = false;
+    double budget = 1.0; ///< Triangles that are drawn, as a multiple of the faces.
+    SplitFirst split_first = SplitFirst::longest;
+    bool measure_disorder = true;
     glm::vec3 background{1.0F};
     int repeat = 1;
     std::string context = "osmesa";

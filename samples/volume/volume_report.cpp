@@ -33,6 +33,35 @@ double whole(const VolumeReport::Frame &frame)
     return frame.sort + frame.draw;
 }
 
+void print_disorder(const VolumeOptions &options, const DisorderReport &report)
+{
+    const Disorder &fragments = report.fragments;
+    fmt::print("disorder: up to {} place{} late of {} fragments, {} pixels",
+               fragments.displacement(), fragments.displacement() == 1 ? "" : "s",
+               fragments.deepest(), fragments.pixels());
+    if (report.colors)
+        fmt::print("; {:.4g} % of them out of order with k = {}, colors off by {:.2g} at most "
+                   "(RMS {:.2g}), by more than 1/255 in {:.4g} %",
+                   100.0 * fragments.share_wrong(options.k), options.k, report.colors->max,
+                   report.colors->rmse, 100.0 * report.colors->share);
+    fmt::print("\n");
+}
+
+json to_json(const DisorderReport &report, int k)
+{
+    json document{{"displacement", report.fragments.displacement()},
+                  {"pixels", report.fragments.pixels()},
+                  {"fragments", report.fragments.fragments()},
+                  {"deepest", report.fragments.deepest()}};
+    if (report.colors) {
+        document["share_wrong"] = report.fragments.share_wrong(k);
+        document["color_error"] = {{"max", report.colors->max},
+                                   {"rmse", report.colors->rmse},
+                                   {"share", report.colors->share}};
+    }
+    return document;
+}
+
 json to_json(glm::vec3 v)
 {
     return json::array({v.x, v.y, v.z});
@@ -58,6 +87,8 @@ void print_report(const VolumeOptions &options, const VolumeReport &report)
                options.size.height, frame.median, frame.p5, frame.p95, report.frames.size(),
                sort.median, report.passes, report.passes == 1 ? "" : "es", report.drawn,
                report.faces, report.bytes_per_pixel);
+    if (report.disorder)
+        print_disorder(options, *report.disorder);
 }
 
 Status write_report(const std::filesystem::path &path, const VolumeOptions &options,
@@ -70,7 +101,7 @@ Status write_report(const std::filesystem::path &path, const VolumeOptions &opti
     for (const VolumeReport::Frame &frame : report.frames)
         times.push_back(whole(frame));
     const OrbitCamera &camera = options.scene.camera;
-    const json document{
+    json document{
         {"grid", options.scene.grid.empty() ? json() : json(options.scene.grid.string())},
         {"cubes", options.scene.cubes},
         {"repair", options.scene.repair},
@@ -86,6 +117,7 @@ Status write_report(const std::filesystem::path &path, const VolumeOptions &opti
         {"size", {options.size.width, options.size.height}},
         {"background", to_json(options.background)},
         {"k", options.k},
+        {"budget", options.budget},
         {"exact", options.exact},
         {"passes", report.passes},
         {"triangles", report.faces},
@@ -96,6 +128,8 @@ Status write_report(const std::filesystem::path &path, const VolumeOptions &opti
          {{"sort", spread(report, [](const VolumeReport::Frame &f) { return f.sort; }).median},
           {"draw", spread(report, [](const VolumeReport::Frame &f) { return f.draw; }).median}}},
     };
+    if (report.disorder)
+        document["disorder"] = to_json(*report.disorder, options.k);
     const std::string text = document.dump(2) + "\n";
     return write_file(path, std::as_bytes(std::span(text)));
 }

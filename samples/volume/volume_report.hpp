@@ -2,11 +2,13 @@
 
 #pragma once
 
+#include "disorder_report.hpp"
 #include "volume_options.hpp"
 #include "volume_scene.hpp"
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace kb
@@ -22,9 +24,10 @@ struct VolumeReport {
     std::size_t drawn = 0; ///< Faces without those that cover no pixel.
     int passes = 0;
     int bytes_per_pixel = 0;
+    std::optional<DisorderReport> disorder;
 };
 
-/// One line for people.
+/// A line for people, and one about disorder.
 void print_report(const VolumeOptions &options, const VolumeReport &report);
 
 /// What other renderers need to draw the same picture, and the times.
