@@ -22,10 +22,14 @@ note() { printf '    %s\n' "$*"; }
 warn() { printf '%s: warning: %s\n' "$command_name" "$*" >&2; }
 
 # The one clear message: what went wrong in the first line, what to do about it in the others.
-die() {
+complain() {
     printf '%s: error: %s\n' "$command_name" "$1" >&2
     shift
     [ $# -eq 0 ] || printf '    %s\n' "$@" >&2
+}
+
+die() {
+    complain "$@"
     exit 1
 }
 

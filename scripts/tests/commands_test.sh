@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Command lines: help, bad options, no half done work after them.
 
-commands=(bench build check-fresh demo fetch-data fuzz patch run test)
+commands=(bench build check-fresh convert-grid demo fetch-data fuzz patch run test)
 
 test_every_command_has_help() {
     local command

@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Grids for the tests of scripts/convert-grid, all of them the unit cube with the field f = x + 2 y,
+and the measure of what was made of them.
+
+Usage: grids.py make FOLDER
+       grids.py measure FILE
+"""
+
+import itertools
+import os
+import sys
+
+import meshio
+import numpy as np
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+POINTS = 5  # along each edge
+
+
+def field(points):
+    return points[:, 0] + 2 * points[:, 1]
+
+
+def cube_points(shape=(POINTS, POINTS, POINTS)):
+    """x changes fastest."""
+    axes = [np.linspace(0, 1, n) for n in shape]
+    z, y, x = np.meshgrid(*axes[::-1], indexing="ij")
+    return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+
+
+def hexahedra():
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    return np.array([
+        [(z + c[2]) * POINTS**2 + (y + c[1]) * POINTS + x + c[0] for c in corners]
+        for z, y, x in itertools.product(range(POINTS - 1), repeat=3)
+    ])
+
+
+def tetrahedra():
+    """Six along the diagonal of each cube, some of them inverted."""
+    ways = list(itertools.permutations([1, POINTS, POINTS**2]))
+    first = hexahedra()[:, 0]
+    return np.concatenate([
+        np.stack([first, first + a, first + a + b, first + a + b + c], axis=1) for a, b, c in ways
+    ])
+
+
+def structured(points, shape):
+    grid = vtk.vtkStructuredGrid()
+    grid.SetDimensions(*shape)
+    coordinates = vtk.vtkPoints()
+    coordinates.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
+    grid.SetPoints(coordinates)
+    values = numpy_to_vtk(field(points).astype(np.float32), deep=True)
+    values.SetName("f")
+    grid.GetPointData().AddArray(values)
+    return grid
+
+
+def write_plot3d(name, blocks, order=">", marks=False, real="f4", blanks=None, text=False):
+    """A grid of blocks (points, shape), and the solution with the field as density."""
+    def record(*parts):
+        content = b"".join(np.ravel(part).astype(order + kind).tobytes() for part, kind in parts)
+        if text:
+            return " ".join(str(value) for part, _ in parts for value in np.ravel(part)).encode()
+        mark = np.array([len(content)], order + "i4").tobytes() if marks else b""
+        return mark + content + mark
+
+    shapes = [shape for _, shape in blocks]
+    head = [record(([len(blocks)], "i4"))] if len(blocks) > 1 else []
+    head.append(record((shapes, "i4")))
+    grid, solution = head.copy(), head.copy()
+    for points, _ in blocks:
+        grid.append(record((points.T, real), *([] if blanks is None else [(blanks, "i4")])))
+        values = np.ones((5, len(points)))
+        values[0] = field(points)
+        solution += [record(([0.5, 0, 1e6, 1], real)), record((values, real))]
+    for ending, records in ((".xyz", grid), (".q", solution)):
+        with open(name + ending, "wb") as file:
+            file.write((b"\n" if text else b"").join(records))
+
+
+def folded_points(shape):
+    """A cube whose cells next to the edge x = y = 0 are wedges: there, i = 0 is one line."""
+    i, j, z = cube_points(shape).T
+    # (i, j) to polar coordinates on the quarter of a square.
+    angle = j * np.pi / 2
+    reach = 1 / np.maximum(np.cos(angle), np.sin(angle))
+    points = np.stack([i * reach * np.cos(angle), i * reach * np.sin(angle), z], axis=1)
+    points[i == 0, :2] = 0
+    return points.round(12)  # so that what is on a side of the cube is exactly there
+
+
+def make(folder):
+    os.chdir(folder)
+    points = cube_points()
+    shape = (POINTS,) * 3
+
+    writer = vtk.vtkXMLStructuredGridWriter()
+    writer.SetFileName("structured.vts")
+    writer.SetInputData(structured(points, shape))
+    writer.Write()
+    write_plot3d("plot3d", [(points, shape)])
+    write_plot3d("little", [(points, shape)], order="<")
+    write_plot3d("marks", [(points, shape)], marks=True)
+    write_plot3d("double", [(points, shape)], real="f8", marks=True, order="<")
+    write_plot3d("text", [(points, shape)], text=True)
+    write_plot3d("blanked", [(points, shape)], blanks=np.where(points[:, 0] > 0.8, 0, 1))
+    write_plot3d("left", [(points * [-1, 1, 1] + [1, 0, 0], shape)])
+    half = points * [0.5, 1, 1]
+    write_plot3d("blocks", [(half, shape), (half + [0.5, 0, 0], shape)])
+    write_plot3d("folded", [(folded_points((5, 5, 3)), (5, 5, 3))])
+
+    at_points = {"f": field(points)}
+    meshio.Mesh(points, [("hexahedron", hexahedra())], at_points).write("hexahedra.vtu")
+    meshio.Mesh(points, [("hexahedron", hexahedra())], at_points).write("hexahedra.vtk")
+    triangles = tetrahedra()[:3, :3]
+    meshio.Mesh(points, [("triangle", triangles), ("tetra", tetrahedra())], at_points).write(
+        "gmsh.msh", file_format="gmsh22"
+    )
+    meshio.Mesh(points, [("tetra", tetrahedra())]).write("medit.mesh")
+    meshio.Mesh(
+        points, [("hexahedron", hexahedra())], cell_data={"c": [np.full(len(hexahedra()), 7.0)]}
+    ).write("cells.vtu")
+
+    meshio.Mesh(points, [("triangle", triangles)], at_points).write("surface.vtu")
+    not_finite = {"f": np.where(np.arange(len(points)) == 9, np.nan, 1.0)}
+    meshio.Mesh(points, [("tetra", tetrahedra())], not_finite).write("nan.vtu")
+    for name in ("nothing.vtu", "nothing.vtk", "nothing.msh", "nothing.mesh", "nothing.xyz"):
+        with open(name, "w", encoding="ascii") as file:
+            file.write("this is no grid\n")
+
+
+def measure(path):
+    """Tetrahedra, their volume, the smallest of them, faces inside the cube that two do not share,
+    and the largest error of the field."""
+    reader = vtk.vtkUnstructuredGridReader()
+    reader.ReadAllFieldsOn()
+    reader.SetFileName(path)
+    reader.Update()
+    grid = reader.GetOutput()
+    points = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
+    assert set(vtk_to_numpy(grid.GetCellTypesArray())) == {vtk.VTK_TETRA}
+    cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
+    a, b, c, d = points[cells].transpose(1, 0, 2)
+    volumes = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
+    faces = np.sort(np.concatenate([np.delete(cells, i, axis=1) for i in range(4)]), axis=1)
+    faces, counts = np.unique(faces, axis=0, return_counts=True)
+    at = points[faces]
+    outer = ((at == at[:, :1]) & ((at == 0) | (at == 1))).all(axis=1).any(axis=1)
+    unshared = (counts != np.where(outer, 1, 2)).sum()
+    arrays = grid.GetPointData()
+    names = [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())]
+    error = 0.0
+    for name in ("f", "Density"):
+        if name in names:
+            error = np.abs(vtk_to_numpy(arrays.GetArray(name)) - field(points)).max()
+    print(f"{len(cells)} tetrahedra, volume {volumes.sum():.6f},"
+          f" {'all' if volumes.min() > 0 else 'not all'} positive, {unshared} faces unshared,"
+          f" field {'right' if error < 1e-6 else 'wrong'}: {' '.join(names)}")
+
+
+if __name__ == "__main__":
+    {"make": make, "measure": measure}[sys.argv[1]](sys.argv[2])
