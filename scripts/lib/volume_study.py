@@ -35,7 +35,7 @@ SCENES = (
 )
 # Name in the report, options of the sample
 OURS = (("kbuffer-program", ("--k", "6")), ("kbuffer-program", ("--k", "12")),
-        ("exact", ("--exact",)))
+        ("exact", ("--exact", "--k", "64")))
 VTK = ("vtk-projected-tetrahedra", "vtk-bunyk", "vtk-bunyk-partial", "vtk-zsweep")
 BUDGETS = ("1", "1.5", "2", "4", "8")
 
