@@ -150,6 +150,6 @@ def make(study, data):
 <p>Methods of transparency side by side on llvmpipe: those that stock Mesa can do, and those of the
 patched one. The raw data is in <a href="{escape(data)}">{escape(data)}</a>. What must stay
 numerically stable is in <a href="hard-cases.html">hard-cases.html</a>, which
-<code>scripts/test --only hard-cases</code> makes.</p>
+<code>scripts/test --only hard-cases</code> makes; volumes are in <a href="volume.html">volume.html</a>.</p>
 {_summary(study)}
 {scenes}{GUIDE}{_machine(study.machine)}""")
