@@ -31,22 +31,21 @@ MAD t.x, -fragment.color.x, kbuffer[{surface}].x, 1.0;
 KIL t.x;
 )";
 
-/// Gives back.xy, untagged, and inside.x: 1 if there is something between front and back. A tag of
-/// 4 is where the ray enters the grid, of -4 where it leaves it.
+/// Gives back.xy, untagged, and inside.x: 1 if there is something between front and back. A tag is
+/// added to the scalar where the ray enters the grid and subtracted where it leaves it.
 static constexpr const char *grid_segment = R"(
 TEMP back, inside;
-SGE t.x, nearest.y, 2.0;
-SLT t.y, nearest.y, -2.0;
-SUB t.x, t.x, t.y;
-MAD back.y, t.x, -4.0, nearest.y;
+MAD t.x, nearest.y, {untag}, 0.5;
+FLR t.x, t.x;
 MOV back.x, nearest.x;
-ADD back.z, t.x, kbuffer[{front}].z;
+MAD back.y, t.x, -{tag}, nearest.y;
+ADD result.kbuffer[{front}].z, kbuffer[{front}].z, t.x;
 SGE inside.x, kbuffer[{front}].z, 0.5;
 )";
 
 static constexpr const char *particle_segment = R"(
 TEMP back, inside;
-MOV back, nearest;
+MOV back.xy, nearest;
 SUB t.x, nearest.x, kbuffer[{front}].x;
 SGE inside.x, program.local[1].y, t.x;
 )";
@@ -54,7 +53,7 @@ SGE inside.x, program.local[1].y, t.x;
 /// The next iso-value from the front's scalar in the direction of the back's is crossed if it is
 /// no farther than that. Segments include both ends: what two of them find at a common end is the
 /// same. The division is by 1e-37 at least, so that it gives 0 where both scalars are the
-/// iso-value.
+/// iso-value. A fragment that comes too late, nearer than the front, does not become the front.
 static constexpr const char *find_surface = R"(
 TEMP iso, extent, next, found, seen;
 SUB t.x, kbuffer[{front}].y, program.local[1].x;
@@ -79,7 +78,7 @@ RCP found.x, t.x;
 SLT seen.y, kbuffer[{surface}].x, found.x;
 MUL seen.x, seen.x, seen.y;
 CMP result.kbuffer[{surface}].xy, -seen.x, found, kbuffer[{surface}];
-MOV result.kbuffer[{front}].xyz, back;
+CMP result.kbuffer[{front}].xy, extent.x, kbuffer[{front}], back;
 END
 )";
 
@@ -87,7 +86,9 @@ std::string make_isosurface_program(int k, Medium medium)
 {
     const auto place = [k](const char *text) {
         return fmt::format(fmt::runtime(text), fmt::arg("front", front_entry(k)),
-                           fmt::arg("surface", surface_entry(k)));
+                           fmt::arg("surface", surface_entry(k)),
+                           fmt::arg("tag", SortedFaces::boundary_tag),
+                           fmt::arg("untag", 1.0F / SortedFaces::boundary_tag));
     };
     return "!!ARBfp1.0\nOPTION MESA_kbuffer_program;\n" + place(reject_hidden) +
            make_take_nearest(k, 0) +
