@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+//
+// Surfaces of particles, drawn in this process on the Mesa that LD_LIBRARY_PATH leads to.
+
+#include "isosurface_test.hpp"
+#include "picture_rays.hpp"
+
+#include "particles.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kb::test
+{
+
+namespace
+{
+
+class ParticlesTest : public IsosurfaceTest
+{
+protected:
+    ImageRgbaF draw(const std::vector<glm::vec3> &points, const std::vector<float> &scalars,
+                    float point_size, float gap, float value, int k = 2)
+    {
+        const ScalarRange range{0.0F, 1.0F};
+        auto stream = make_particle_stream(gl(), points, scalars, range, point_size);
+        return draw_stream(stream, range, {value}, k, gap);
+    }
+};
+
+TEST_F(ParticlesTest, InLayersHaveASurfaceBetweenThem)
+{
+    // Layers that cover the picture, square to the line of sight, in no order.
+    camera_ = {};
+    constexpr float spacing = 0.05F;
+    std::vector<glm::vec3> points;
+    std::vector<float> scalars;
+    for (const auto &[z, scalar] :
+         {std::pair(0.0F, 0.6F), {-0.3F, 1.0F}, {0.3F, 0.0F}, {0.15F, 0.1F}}) {
+        for (int y = -30; y <= 30; ++y) {
+            for (int x = -30; x <= 30; ++x) {
+                points.emplace_back(spacing * static_cast<float>(x),
+                                    spacing * static_cast<float>(y), z);
+                scalars.push_back(scalar);
+            }
+        }
+    }
+    // 0.35 is half way between 0.1 at z = 0.15 and 0.6 at 0.
+    const double depth = double(camera_.distance) - 0.075;
+    // As in surfaces_test.cpp, and the scalars are rounded, too.
+    const double tolerance = 32.0 * std::ldexp(1.0, -23);
+    const ImageRgbaF drawn = draw(points, scalars, 2.0F * spacing, 0.2F, 0.35F);
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x)
+            ASSERT_NEAR(drawn.at(x, y).x, depth * length_per_depth(camera_, x, y), tolerance)
+                << x << ", " << y;
+    }
+    // 0.15 between layers is a gap now.
+    for (const glm::vec4 &pixel : draw(points, scalars, 2.0F * spacing, 0.14F, 0.35F).pixels)
+        ASSERT_EQ(pixel.x, 0.0F);
+}
+
+TEST_F(ParticlesTest, OfTheDistanceFieldAreASphere)
+{
+    const PointSet set = make_particles(300'000);
+    std::vector<float> distances;
+    for (const glm::vec3 &p : set.points)
+        distances.push_back(glm::length(p));
+    // The lattice's cubes, each with a particle. A point of twice the diagonal of a cube is in the
+    // way of every ray through the cube, so that two that follow each other on a ray are at most
+    // two diagonals apart.
+    const double cube = 2.0 / std::round(std::cbrt(300'000.0 * 6.0 / 3.14159265));
+    const double diagonal = std::sqrt(3.0) * cube;
+    const double side = 2.0 * diagonal;
+    constexpr float radius = 0.6F;
+    const ImageRgbaF drawn = draw(set.points, distances, static_cast<float>(side),
+                                  static_cast<float>(2.5 * diagonal), radius, 6);
+
+    // A particle is up to half the diagonal of its square, and a pixel for the rasterizer, away
+    // from the ray: so much its scalar may be wrong for the place on the ray. Between two of them
+    // the distance is convex: linear interpolation adds up to length^2 / 8 times its second
+    // derivative, which is 1 / distance.
+    const double pixel = 2.0 * std::tan(22.5 / 180.0 * 3.14159265) / 170.0 * 3.7;
+    const double bound =
+        side / std::sqrt(2.0) + pixel + std::pow(2.0 * diagonal, 2.0) / 8.0 / (radius - side);
+    ASSERT_LT(bound, 0.2);
+    int surfaces = 0;
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+            const Ray ray = ray_through(camera_, x, y);
+            const double distance = drawn.at(x, y).x;
+            if (distance > 0.0) {
+                ++surfaces;
+                ASSERT_NEAR(glm::length(ray.at(distance)), radius, bound) << x << ", " << y;
+            } else {
+                ASSERT_GT(ray.distance_from_origin(), radius - bound) << x << ", " << y;
+            }
+        }
+    }
+    EXPECT_GT(surfaces, 1000);
+}
+
+TEST_F(ParticlesTest, ComeInOrder)
+{
+    const PointSet set = make_particles(20'000);
+    const auto &scalars = set.fields.front().values;
+    const float side = 2.0F * mean_spacing(set.points);
+    const ImageRgbaF two = draw(set.points, scalars, side, 0.5F, 0.3F, 2);
+    const ImageRgbaF many = draw(set.points, scalars, side, 0.5F, 0.3F, 16);
+    EXPECT_TRUE(two.pixels == many.pixels);
+    EXPECT_GT(std::ranges::count_if(two.pixels, [](const glm::vec4 &p) { return p.x > 0.0F; }),
+              1000);
+}
+
+TEST(GeneratedParticles, FillTheUnitBall)
+{
+    for (const std::size_t count : {100U, 5'000U, 200'000U}) {
+        const PointSet set = make_particles(count);
+        EXPECT_TRUE(check_point_set(set));
+        EXPECT_NEAR(static_cast<double>(set.points.size()), static_cast<double>(count),
+                    0.2 * static_cast<double>(count));
+        for (const glm::vec3 &p : set.points)
+            ASSERT_LE(glm::length(p), 1.000001F);
+        // Their box has the volume 8.
+        const double expected = std::cbrt(8.0 / static_cast<double>(set.points.size()));
+        EXPECT_NEAR(mean_spacing(set.points), expected, 0.2 * expected);
+    }
+    EXPECT_EQ(make_particles(1'000).points, make_particles(1'000).points);
+}
+
+} // namespace
+
+} // namespace kb::test
