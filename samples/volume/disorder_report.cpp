@@ -14,7 +14,7 @@ namespace kb
 static Result<ImageRgbaF> draw_exact(const Gl &gl, const VolumeOptions &options,
                                      const VolumeScene &scene)
 {
-    VolumeSettings settings{options.size, 0, scene.transfer, scene.max_length, options.background};
+    VolumeSettings settings{options.size, 0, scene.transfer, options.background};
     settings.k = 32; // Layers a pass: many, as each pass draws all faces.
     const auto renderer = make_exact_renderer(gl, settings);
     if (!renderer)

@@ -30,6 +30,9 @@ void main()
 }
 )";
 
+/// Narrow peaks of a transfer function want many texels.
+constexpr TableSize table_size{2049, 129};
+
 /// Texture units of the shaders below.
 enum Unit { fragments_unit, depths_unit, color_unit, front_unit, table_unit };
 
@@ -75,8 +78,7 @@ public:
                   Program add, Program finish)
         : gl_(gl), size_(settings.size), peeling_(std::move(peeling)), faces_(std::move(faces)),
           add_(std::move(add)), finish_(std::move(finish)),
-          table_(
-              make_segment_texture(gl, PreintegratedTable(settings.transfer, settings.max_length))),
+          table_(gl, PreintegratedTable(settings.transfer, table_size), GL_LINEAR),
           sums_{Sum(gl, size_), Sum(gl, size_)},
           picture_(make_texture_2d(gl, GL_RGBA32F, size_.width, size_.height)), framebuffer_(gl),
           empty_(gl)
@@ -85,7 +87,8 @@ public:
         gl.Uniform1i(add_.uniform("fragments"), fragments_unit);
         gl.Uniform1i(add_.uniform("color_so_far"), color_unit);
         gl.Uniform1i(add_.uniform("front_so_far"), front_unit);
-        gl.Uniform1i(add_.uniform("segment_table"), table_unit);
+        gl.Uniform1i(add_.uniform("thin"), table_unit);
+        gl.Uniform1i(add_.uniform("fading"), table_unit + 1);
         finish_.use();
         gl.Uniform1i(finish_.uniform("color_so_far"), color_unit);
         gl.Uniform3f(finish_.uniform("background"), settings.background.r, settings.background.g,
@@ -178,7 +181,7 @@ private:
         peeling_.bind_textures();
         bind(color_unit, GL_TEXTURE_2D, sums_[0].color);
         bind(front_unit, GL_TEXTURE_2D, sums_[0].front);
-        bind(table_unit, GL_TEXTURE_3D, table_);
+        table_.bind(table_unit);
         add_.use();
         draw_full_screen(gl_, empty_);
         std::swap(sums_[0], sums_[1]);
@@ -198,7 +201,7 @@ private:
     Program faces_;
     Program add_;
     Program finish_;
-    Texture table_;
+    SegmentTextures table_;
     std::array<Sum, 2> sums_;
     Texture picture_;
     Framebuffer framebuffer_;
@@ -223,7 +226,7 @@ Result<std::unique_ptr<VolumeRenderer>> make_exact_renderer(const Gl &gl,
         return faces.error();
     auto add = Program::make(gl, full_screen_vertex_shader,
                              fmt::format("#version 330\n#define LAYERS {}\n", settings.k) +
-                                 make_volume_shader(settings.max_length) + add_shader);
+                                 make_volume_shader(table_size) + add_shader);
     if (!add)
         return add.error();
     auto finish = Program::make(gl, full_screen_vertex_shader, finish_shader);

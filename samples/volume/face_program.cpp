@@ -38,8 +38,8 @@ Result<Program> make_face_program(const Gl &gl, const std::string &fragment_shad
 {
     constexpr float tag = SortedFaces::boundary_tag;
     const std::string tagged =
-        fmt::format("\nfloat tagged_scalar()\n{{\n    return scalar > {:.1f} "
-                    "&& !gl_FrontFacing ? scalar - {:.1f} : scalar;\n}}\n",
+        fmt::format("\nfloat tagged_scalar()\n{{\n    return gl_FrontFacing || scalar < {:.1f} ? "
+                    "scalar : scalar - {:.1f};\n}}\n",
                     tag / 2.0F, 2.0F * tag);
     return Program::make(gl, vertex_shader, fragment_shader_start + tagged + fragment_shader);
 }

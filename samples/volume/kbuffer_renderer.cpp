@@ -20,6 +20,9 @@ namespace kb
 namespace
 {
 
+/// Small enough for the caches.
+constexpr TableSize table_size{513, 65};
+
 constexpr int table_unit = 8; ///< Of the flush: behind the attachments of the k-buffer.
 
 constexpr const char *face_shader = R"(
@@ -32,7 +35,7 @@ void main()
 )";
 
 /// Takes the nearest of those that are left, k times.
-std::string make_flush_shader(const KBuffer &kbuffer, int k, float max_length)
+std::string make_flush_shader(const KBuffer &kbuffer, int k)
 {
     const auto fetch = [&kbuffer](int entry) {
         return fmt::format("texelFetch(attachment{}, ivec3(pixel, {}), 0)",
@@ -43,7 +46,7 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k, float max_length)
         text += fmt::format("uniform sampler2DArray attachment{};\n", a);
     text += "uniform vec3 background;\n"
             "layout(location = 0) out vec4 result;\n";
-    text += make_volume_shader(max_length);
+    text += make_volume_shader(table_size);
     text += "void main()\n{\n"
             "    ivec2 pixel = ivec2(gl_FragCoord.xy);\n";
     text += fmt::format("    start({}, {});\n    vec2 waiting[{}];\n", fetch(0), fetch(1),
@@ -81,15 +84,15 @@ public:
     KBufferRenderer(const Gl &gl, const VolumeSettings &settings, KBuffer kbuffer, Program faces,
                     ArbProgram program, Program flush, const PreintegratedTable &table)
         : gl_(gl), size_(settings.size), kbuffer_(std::move(kbuffer)), faces_(std::move(faces)),
-          program_(std::move(program)), flush_(std::move(flush)),
-          table_(make_segment_texture(gl, table)),
+          program_(std::move(program)), flush_(std::move(flush)), table_(gl, table, GL_NEAREST),
           picture_(make_texture_2d(gl, GL_RGBA32F, size_.width, size_.height)), framebuffer_(gl),
           empty_(gl)
     {
         flush_.use();
         for (int a = 0; a < kbuffer_.attachments(); ++a)
             gl.Uniform1i(flush_.uniform(fmt::format("attachment{}", a).c_str()), a);
-        gl.Uniform1i(flush_.uniform("segment_table"), table_unit);
+        gl.Uniform1i(flush_.uniform("thin"), table_unit);
+        gl.Uniform1i(flush_.uniform("fading"), table_unit + 1);
         gl.Uniform3f(flush_.uniform("background"), settings.background.r, settings.background.g,
                      settings.background.b);
         gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
@@ -101,7 +104,7 @@ public:
     {
         kbuffer_.clear(glm::vec4(0.0F));
         gl_.Disable(GL_DEPTH_TEST);
-        gl_.BindTexture(GL_TEXTURE_3D, table_.id());
+        table_.bind(0);
         program_.bind();
         use_face_program(gl_, faces_, camera, size_);
         gl_.Enable(GL_KBUFFER_PROGRAM_MESA);
@@ -121,9 +124,7 @@ private:
         gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
         gl_.Viewport(0, 0, size_.width, size_.height);
         kbuffer_.bind_textures();
-        gl_.ActiveTexture(GL_TEXTURE0 + table_unit);
-        gl_.BindTexture(GL_TEXTURE_3D, table_.id());
-        gl_.ActiveTexture(GL_TEXTURE0);
+        table_.bind(table_unit);
         flush_.use();
         draw_full_screen(gl_, empty_);
     }
@@ -134,7 +135,7 @@ private:
     Program faces_;
     ArbProgram program_;
     Program flush_;
-    Texture table_;
+    SegmentTextures table_;
     Texture picture_;
     Framebuffer framebuffer_;
     VertexArray empty_;
@@ -151,15 +152,15 @@ Result<std::unique_ptr<VolumeRenderer>> make_kbuffer_renderer(const Gl &gl,
     auto faces = make_face_program(gl, face_shader);
     if (!faces)
         return faces.error();
-    auto program = ArbProgram::make(gl, GL_KBUFFER_PROGRAM_MESA,
-                                    make_volume_program(settings.k, settings.max_length));
+    auto program =
+        ArbProgram::make(gl, GL_KBUFFER_PROGRAM_MESA, make_volume_program(settings.k, table_size));
     if (!program)
         return program.error();
-    auto flush = Program::make(gl, full_screen_vertex_shader,
-                               make_flush_shader(*kbuffer, settings.k, settings.max_length));
+    auto flush =
+        Program::make(gl, full_screen_vertex_shader, make_flush_shader(*kbuffer, settings.k));
     if (!flush)
         return flush.error();
-    const PreintegratedTable table(settings.transfer, settings.max_length);
+    const PreintegratedTable table(settings.transfer, table_size);
     auto renderer =
         std::make_unique<KBufferRenderer>(gl, settings, std::move(*kbuffer), std::move(*faces),
                                           std::move(*program), std::move(*flush), table);

@@ -35,8 +35,7 @@ struct Failure {
 kb::Result<std::unique_ptr<kb::VolumeRenderer>>
 make_renderer(const kb::Gl &gl, const kb::VolumeOptions &options, const kb::VolumeScene &scene)
 {
-    const kb::VolumeSettings settings{options.size, options.k, scene.transfer, scene.max_length,
-                                      options.background};
+    const kb::VolumeSettings settings{options.size, options.k, scene.transfer, options.background};
     if (options.exact)
         return kb::make_exact_renderer(gl, settings);
     if (auto supported = kb::require_kbuffer_program(gl); !supported)
@@ -76,7 +75,9 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
             return lacking(drawn.error());
     }
 
-    const kb::ImageRgbaF image = kb::read_color(gl, (*renderer)->framebuffer(), options.size);
+    kb::ImageRgbaF image = kb::read_color(gl, (*renderer)->framebuffer(), options.size);
+    for (glm::vec4 &pixel : image.pixels)
+        pixel.a = 1.0F; // The background is in it.
     if (auto written = kb::write_outputs({options.picture, options.floats, {}}, image, {});
         !written)
         return Failure{written.error(), kb::exit_bad_input};

@@ -125,33 +125,51 @@ SegmentOptics integrate_segment(const TransferFunction &transfer, float front, f
     return Steps(transfer, front, back).at(length);
 }
 
-PreintegratedTable::PreintegratedTable(const TransferFunction &transfer, float max_length)
-    : max_length_(max_length),
-      texels_(std::size_t(scalars) * std::size_t(scalars) * std::size_t(lengths))
+double fade(double depth)
+{
+    const auto polynomial = [depth](const std::array<double, 4> &c) {
+        return depth * (c[0] + depth * (c[1] + depth * (c[2] + depth * c[3])));
+    };
+    return polynomial(fade_numerator) / (1.0 + polynomial(fade_denominator));
+}
+
+PreintegratedTable::PreintegratedTable(const TransferFunction &transfer, TableSize size)
+    : size_(size),
+      thin_(static_cast<std::size_t>(size.means) * static_cast<std::size_t>(size.differences)),
+      fading_(thin_.size())
 {
     const int parts = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 16);
     std::vector<std::future<void>> work;
     for (int i = 0; i < parts; ++i)
         work.push_back(std::async(std::launch::async, [&, i] {
-            fill(transfer, scalars * i / parts, scalars * (i + 1) / parts);
+            fill(transfer, size.differences * i / parts, size.differences * (i + 1) / parts);
         }));
     for (auto &part : work)
         part.get();
 }
 
-void PreintegratedTable::fill(const TransferFunction &transfer, int first_back, int last_back)
+void PreintegratedTable::fill(const TransferFunction &transfer, int first_difference,
+                              int last_difference)
 {
-    constexpr double last = scalars - 1;
-    for (int back = first_back; back < last_back; ++back) {
-        for (int front = 0; front < scalars; ++front) {
-            const Steps steps(transfer, front / last, back / last);
-            for (int i = 0; i < lengths; ++i) {
-                const double part = static_cast<double>(i) / (lengths - 1);
-                const SegmentOptics optics = steps.at(max_length_ * part * part);
-                texels_[(std::size_t(i) * std::size_t(scalars) + std::size_t(back)) *
-                            std::size_t(scalars) +
-                        std::size_t(front)] = glm::vec4(optics.color, optics.extinction);
+    for (int j = first_difference; j < last_difference; ++j) {
+        const double place = (2.0 * j / (size_.differences - 1) - 1.0) / (1.0 + half_difference);
+        const double difference = half_difference * place / (1.0 - std::abs(place));
+        for (int i = 0; i < size_.means; ++i) {
+            const double mean = static_cast<double>(i) / (size_.means - 1);
+            const Steps steps(transfer, mean - 0.5 * difference, mean + 0.5 * difference);
+            const SegmentOptics thin = steps.at(0.0);
+            glm::vec3 fading(0.0F);
+            if (thin.extinction > 0.0F) {
+                constexpr double depth = 2.0;
+                const SegmentOptics faded = steps.at(depth / thin.extinction);
+                const glm::vec3 thick =
+                    thin.color + (faded.color - thin.color) / static_cast<float>(fade(depth));
+                fading = glm::clamp(thick, 0.0F, 1.0F) - thin.color;
             }
+            const auto texel = static_cast<std::size_t>(j) * static_cast<std::size_t>(size_.means) +
+                               static_cast<std::size_t>(i);
+            thin_[texel] = glm::vec4(thin.color, thin.extinction);
+            fading_[texel] = glm::vec4(fading, 0.0F);
         }
     }
 }

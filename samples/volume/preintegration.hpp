@@ -6,6 +6,7 @@
 
 #include <glm/vec4.hpp>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -19,32 +20,59 @@ struct SegmentOptics {
     float extinction = 0.0F; ///< Mean over the segment.
 };
 
-/// The integrals over segments by the scalars at their ends and their length. Extinction does not
-/// depend on the length, and color hardly: the table is fine in the scalars and coarse in length.
+/// Texels: from a mean of 0 to 1, and from a difference back - front of -1 to 1. Powers of two and
+/// one more have texels at 1/2, 1/4...
+struct TableSize {
+    int means;
+    int differences;
+};
+
+/// The integrals over segments, by the scalars at their ends. What depends on the length does so by
+/// the optical depth D = extinction * length alone: where extinction is constant and color goes
+/// linearly,
+///
+///     color = thin color + fade(D) (thick color - thin color)
+///
+/// with the colors in the limits of no and of infinite optical depth. Of other segments the thick
+/// color is the one with which this is right at D = 2, so that what is left is an error where
+/// extinction bends within an opaque segment.
+///
+/// Most segments lie in small cells, so that the scalars at their ends are nearly the same: the
+/// table is fine in the mean of the two, and has the most texels where their difference is small.
 class PreintegratedTable
 {
 public:
-    /// For a normalized transfer function and segments of up to max_length.
-    PreintegratedTable(const TransferFunction &transfer, float max_length);
+    /// For a normalized transfer function.
+    PreintegratedTable(const TransferFunction &transfer, TableSize size);
 
-    static constexpr int scalars = 256; ///< Texels, at front and back scalars of 0 to 1.
-    static constexpr int lengths = 16;  ///< Slices: their length is max_length (i / 15)^2.
+    /// A difference d is at d / (|d| + half_difference) (1 + half_difference) from -1 to 1.
+    static constexpr double half_difference = 1.0 / 16.0;
 
     /// Extinction is at most this, infinite extinction is this: in float, times the shortest
     /// length that is not zero it is opaque still, and times the longest it is finite.
     static constexpr float max_extinction = 1e9F;
 
-    float max_length() const { return max_length_; }
+    TableSize size() const { return size_; }
 
-    /// (color, extinction), front scalars first, then back ones, then lengths.
-    const std::vector<glm::vec4> &texels() const { return texels_; }
+    /// (thin color, extinction), and (thick color - thin color, 0); means first.
+    const std::vector<glm::vec4> &thin() const { return thin_; }
+    const std::vector<glm::vec4> &fading() const { return fading_; }
 
 private:
-    void fill(const TransferFunction &transfer, int first_back, int last_back);
+    void fill(const TransferFunction &transfer, int first_difference, int last_difference);
 
-    float max_length_;
-    std::vector<glm::vec4> texels_;
+    TableSize size_;
+    std::vector<glm::vec4> thin_;
+    std::vector<glm::vec4> fading_;
 };
+
+/// coth(D / 2) - 2 / D: from D / 6 to 1. A rational function that is within 4e-5 of that, the
+/// coefficients of which are those of D, D^2, D^3, D^4 (and 1 of D^0 in the denominator).
+inline constexpr std::array<double, 4> fade_numerator{0.16625139, 0.04071798, 0.00581424,
+                                                      0.00143069};
+inline constexpr std::array<double, 4> fade_denominator{0.23621826, 0.05995918, 0.00864971,
+                                                        0.00143074};
+double fade(double depth);
 
 /// The integral itself, with steps that are ever so fine: what the table holds.
 SegmentOptics integrate_segment(const TransferFunction &transfer, float front, float back,

@@ -5,19 +5,35 @@
 namespace kb
 {
 
-Texture make_segment_texture(const Gl &gl, const PreintegratedTable &table)
+static Texture make_texture(const Gl &gl, const PreintegratedTable &table,
+                            const std::vector<glm::vec4> &texels, GLint filter)
 {
     Texture texture(gl);
-    gl.BindTexture(GL_TEXTURE_3D, texture.id());
-    gl.TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, PreintegratedTable::scalars,
-                  PreintegratedTable::scalars, PreintegratedTable::lengths, 0, GL_RGBA, GL_FLOAT,
-                  table.texels().data());
-    gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-        gl.TexParameteri(GL_TEXTURE_3D, wrap, GL_CLAMP_TO_EDGE);
+    gl.BindTexture(GL_TEXTURE_2D, texture.id());
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, table.size().means, table.size().differences, 0,
+                  GL_RGBA, GL_FLOAT, texels.data());
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     return texture;
+}
+
+SegmentTextures::SegmentTextures(const Gl &gl, const PreintegratedTable &table, GLint fading_filter)
+    : thin_(make_texture(gl, table, table.thin(), GL_LINEAR)),
+      fading_(make_texture(gl, table, table.fading(), fading_filter))
+{
+}
+
+void SegmentTextures::bind(int unit) const
+{
+    const Gl &gl = thin_.gl();
+    gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    gl.BindTexture(GL_TEXTURE_2D, thin_.id());
+    gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit) + 1);
+    gl.BindTexture(GL_TEXTURE_2D, fading_.id());
+    gl.ActiveTexture(GL_TEXTURE0);
 }
 
 } // namespace kb

@@ -8,8 +8,20 @@
 namespace kb
 {
 
-/// The table as a texture: 3D, RGBA32F, linear filtering. Stays bound to the texture unit that was
-/// active.
-Texture make_segment_texture(const Gl &gl, const PreintegratedTable &table);
+/// The table as two textures: 2D, RGBA32F.
+class SegmentTextures
+{
+public:
+    /// Linear filtering, of `fading` that which is given: GL_NEAREST costs half of the time, and
+    /// its error counts little where segments are thin.
+    SegmentTextures(const Gl &gl, const PreintegratedTable &table, GLint fading_filter);
+
+    /// Binds `thin` to a texture unit and `fading` to the next.
+    void bind(int unit) const;
+
+private:
+    Texture thin_;
+    Texture fading_;
+};
 
 } // namespace kb

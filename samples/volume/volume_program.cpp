@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <array>
 
 namespace kb
 {
@@ -24,18 +24,36 @@ namespace
 {
 
 constexpr int first_waiting = 2;
-
-/// Texel i of n has its center at (i + 0.5) / n.
-struct TableScale {
-    double scale;
-    double offset;
-};
-constexpr TableScale scale_of(int texels)
-{
-    return {static_cast<double>(texels - 1) / texels, 0.5 / texels};
-}
-
 constexpr double log2_of_e = 1.4426950408889634;
+
+/// From what a segment has to texture coordinates: texel i of n has its center at (i + 0.5) / n.
+/// The sum of the scalars, scaled, is the place of their mean; a difference d is d / (|d| + half),
+/// scaled.
+struct TableScale {
+    explicit TableScale(TableSize size)
+        : mean_scale(0.5 * span(size.means)), mean_offset(0.5 / size.means),
+          difference_scale(0.5 * span(size.differences) *
+                           (1.0 + PreintegratedTable::half_difference))
+    {
+    }
+
+    static double span(int texels) { return static_cast<double>(texels - 1) / texels; }
+
+    double mean_scale;
+    double mean_offset;
+    double difference_scale;
+};
+
+/// c[3] x^4 + c[2] x^3 + c[1] x^2 + c[0] x + last.
+std::string polynomial(const std::string &result, const std::string &x,
+                       const std::array<double, 4> &c, double last)
+{
+    return fmt::format("MAD {0}, {1}, {2}, {3};\n"
+                       "MAD {0}, {0}, {1}, {4};\n"
+                       "MAD {0}, {0}, {1}, {5};\n"
+                       "MAD {0}, {0}, {1}, {6};\n",
+                       result, x, c[3], c[2], c[1], c[0], last);
+}
 
 } // namespace
 
@@ -49,16 +67,15 @@ int max_waiting(int entries)
     return 2 * (entries - first_waiting);
 }
 
-std::string make_volume_program(int k, float max_length)
+std::string make_volume_program(int k, TableSize table)
 {
-    const TableScale scalar = scale_of(PreintegratedTable::scalars);
-    const TableScale length = scale_of(PreintegratedTable::lengths);
+    const TableScale scale(table);
     std::string text = "!!ARBfp1.0\n"
                        "OPTION MESA_kbuffer_program;\n";
     text +=
         fmt::format("# Puts in order what is no more than {} places from where it belongs.\n", k);
     text += make_take_nearest(k, first_waiting);
-    text += fmt::format("TEMP tag, segment, place, optics, depth;\n"
+    text += fmt::format("TEMP tag, segment, place, optics, fading, depth, alpha;\n"
                         // The tag of an entry is +1, that of an exit -1.
                         "MAD tag.x, nearest.y, {0}, 0.5;\n"
                         "FLR tag.x, tag.x;\n"
@@ -72,41 +89,54 @@ std::string make_volume_program(int k, float max_length)
                         "SLT segment.y, 0.5, kbuffer[1].z;\n"
                         "MUL segment.x, segment.x, segment.y;\n",
                         1.0F / SortedFaces::boundary_tag, -SortedFaces::boundary_tag);
-    text += fmt::format("MAD place.x, kbuffer[1].y, {0}, {1};\n"
-                        "MAD place.y, nearest.y, {0}, {1};\n"
-                        // sqrt(x) = x rsqrt(x), without the reciprocal of 0.
-                        "MAX place.w, segment.x, 1e-20;\n"
-                        "RSQ place.z, place.w;\n"
-                        "MUL place.z, place.z, place.w;\n"
-                        "MAD place.z, place.z, {2}, {3};\n"
-                        "TEX optics, place, texture[0], 3D;\n",
-                        scalar.scale, scalar.offset, length.scale / std::sqrt(max_length),
-                        length.offset);
-    text += fmt::format("MUL depth.x, optics.w, segment.x;\n"
+    text += fmt::format("ADD place.x, nearest.y, kbuffer[1].y;\n"
+                        "MAD place.x, place.x, {}, {};\n"
+                        "SUB segment.y, nearest.y, kbuffer[1].y;\n"
+                        "ABS segment.z, segment.y;\n"
+                        "ADD segment.z, segment.z, {};\n"
+                        "RCP segment.z, segment.z;\n"
+                        "MUL segment.y, segment.y, segment.z;\n"
+                        "MAD place.y, segment.y, {}, 0.5;\n"
+                        "TEX optics, place, texture[0], 2D;\n"
+                        "TEX fading, place, texture[1], 2D;\n"
+                        "MUL depth.x, optics.w, segment.x;\n",
+                        scale.mean_scale, scale.mean_offset, PreintegratedTable::half_difference,
+                        scale.difference_scale);
+    text += polynomial("depth.y", "depth.x", fade_numerator, 0.0);
+    text += polynomial("depth.z", "depth.x", fade_denominator, 1.0);
+    text += fmt::format("RCP depth.z, depth.z;\n"
+                        "MUL depth.y, depth.y, depth.z;\n"
+                        "MAD optics.xyz, fading, depth.y, optics;\n"
                         "ADD depth.x, depth.x, kbuffer[1].w;\n"
                         "MOV result.kbuffer[1].w, depth.x;\n"
-                        "MUL depth.y, depth.x, {};\n"
-                        "EX2 depth.y, depth.y;\n"
-                        "SUB depth.y, 1.0, depth.y;\n"
-                        "MOV result.kbuffer[0].w, depth.y;\n"
-                        "SUB depth.z, depth.y, kbuffer[0].w;\n"
-                        "MAD result.kbuffer[0].xyz, optics, depth.z, kbuffer[0];\n"
+                        "MUL alpha.x, depth.x, {};\n"
+                        "EX2 alpha.x, alpha.x;\n"
+                        "SUB alpha.x, 1.0, alpha.x;\n"
+                        "MOV result.kbuffer[0].w, alpha.x;\n"
+                        "SUB alpha.y, alpha.x, kbuffer[0].w;\n"
+                        "MAD result.kbuffer[0].xyz, optics, alpha.y, kbuffer[0];\n"
                         "END\n",
                         -log2_of_e);
     return text;
 }
 
-std::string make_volume_shader(float max_length)
+std::string make_volume_shader(TableSize table)
 {
-    const TableScale scalar = scale_of(PreintegratedTable::scalars);
-    const TableScale length = scale_of(PreintegratedTable::lengths);
-    return fmt::format("uniform sampler3D segment_table;\n"
+    const TableScale scale(table);
+    const auto vector = [](const std::array<double, 4> &c) {
+        return fmt::format("vec4({:.9f}, {:.9f}, {:.9f}, {:.9f})", c[0], c[1], c[2], c[3]);
+    };
+    return fmt::format("uniform sampler2D thin;\n"
+                       "uniform sampler2D fading;\n"
                        "const float tag = {:.1f};\n"
-                       "const vec3 table_scale = vec3({:.9f}, {:.9f}, {:.9f});\n"
-                       "const vec3 table_offset = vec3({:.9f}, {:.9f}, {:.9f});\n",
-                       SortedFaces::boundary_tag, scalar.scale, scalar.scale,
-                       length.scale / std::sqrt(max_length), scalar.offset, scalar.offset,
-                       length.offset) +
+                       "const float half_difference = {:.9f};\n"
+                       "const vec2 table_scale = vec2({:.9f}, {:.9f});\n"
+                       "const vec2 table_offset = vec2({:.9f}, 0.5);\n"
+                       "const vec4 fade_numerator = {};\n"
+                       "const vec4 fade_denominator = {};\n",
+                       SortedFaces::boundary_tag, PreintegratedTable::half_difference,
+                       scale.mean_scale, scale.difference_scale, scale.mean_offset,
+                       vector(fade_numerator), vector(fade_denominator)) +
            R"(
 vec4 color;
 vec4 front;
@@ -117,15 +147,26 @@ void start(vec4 entry0, vec4 entry1)
     front = entry1;
 }
 
+float polynomial(float x, vec4 c)
+{
+    return x * (c.x + x * (c.y + x * (c.z + x * c.w)));
+}
+
 void add(vec2 fragment)
 {
     float inside = floor(fragment.y / tag + 0.5);
     float scalar = fragment.y - inside * tag;
     float segment = fragment.x - front.x;
     if (segment > 0.0 && front.z > 0.5) {
-        vec3 place = vec3(front.y, scalar, sqrt(segment)) * table_scale + table_offset;
-        vec4 optics = textureLod(segment_table, place, 0.0);
-        front.w += optics.w * segment;
+        float difference = scalar - front.y;
+        vec2 place = vec2(front.y + scalar, difference / (abs(difference) + half_difference)) *
+                         table_scale + table_offset;
+        vec4 optics = textureLod(thin, place, 0.0);
+        float depth = optics.w * segment;
+        float fade = polynomial(depth, fade_numerator) /
+                     (1.0 + polynomial(depth, fade_denominator));
+        optics.rgb += fade * textureLod(fading, place, 0.0).rgb;
+        front.w += depth;
         float alpha = 1.0 - exp(-front.w);
         color = vec4(color.rgb + optics.rgb * (alpha - color.a), alpha);
     }

@@ -11,6 +11,8 @@
 
 #pragma once
 
+#include "preintegration.hpp"
+
 #include <string>
 
 namespace kb
@@ -23,8 +25,8 @@ int volume_entries(int k);
 int max_waiting(int entries);
 
 /// The k-buffer program: puts a fragment among those that wait, and composites the segment that
-/// ends at the one that leaves. Table lookups are in texture unit 0, segments up to max_length.
-std::string make_volume_program(int k, float max_length);
+/// ends at the one that leaves. The table is in texture units 0 and 1.
+std::string make_volume_program(int k, TableSize table);
 
 /// The same in GLSL 3.30, for fragments that come in order: declares
 ///
@@ -33,7 +35,7 @@ std::string make_volume_program(int k, float max_length);
 ///     vec4 color;                entry 0
 ///     vec4 front;                entry 1
 ///
-/// and the uniform sampler3D segment_table.
-std::string make_volume_shader(float max_length);
+/// and the uniforms sampler2D thin and fading, the table.
+std::string make_volume_shader(TableSize table);
 
 } // namespace kb

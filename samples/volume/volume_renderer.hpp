@@ -17,7 +17,6 @@ struct VolumeSettings {
     Size size;
     int k = 6; ///< Fragments that wait in the k-buffer, or layers a pass of the exact renderer.
     TransferFunction transfer; ///< Normalized.
-    float max_length = 2.0F;   ///< Of a segment: the longest edge of the grid.
     glm::vec3 background{1.0F};
 };
 

@@ -34,19 +34,6 @@ static Result<TransferFunction> make_transfer(const VolumeSceneOptions &options,
     return load_transfer_function(options.transfer, range);
 }
 
-/// A segment lies in a cell: it is no longer than the cell's longest edge.
-static float longest_edge(const FaceMesh &mesh)
-{
-    float longest = 0.0F;
-    for (const glm::uvec3 &triangle : mesh.triangles) {
-        for (int i = 0; i < 3; ++i) {
-            longest = std::max(longest, glm::distance(mesh.positions[triangle[i]],
-                                                      mesh.positions[triangle[(i + 1) % 3]]));
-        }
-    }
-    return longest;
-}
-
 Result<VolumeScene> make_volume_scene(const VolumeSceneOptions &options)
 {
     auto grid = make_grid(options);
@@ -73,10 +60,9 @@ Result<VolumeScene> make_volume_scene(const VolumeSceneOptions &options)
     fit_to_unit_sphere(*grid);
 
     FaceMesh faces = make_face_mesh(*grid, **field);
-    const float max_length = longest_edge(faces);
     const std::string name = (*field)->name;
-    return VolumeScene{std::move(*grid),     name,      range, center, radius, std::move(faces),
-                       std::move(*transfer), max_length};
+    return VolumeScene{std::move(*grid),    name, range, center, radius, std::move(faces),
+                       std::move(*transfer)};
 }
 
 } // namespace kb

@@ -22,7 +22,6 @@ struct VolumeScene {
     float radius;
     FaceMesh faces;
     TransferFunction transfer; ///< Normalized to the range.
-    float max_length;          ///< Of a segment of a ray in a cell.
 };
 
 /// Errors are those of the input.
