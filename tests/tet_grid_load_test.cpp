@@ -148,6 +148,8 @@ TEST(LoadTetGrid, SaysHowToConvertOtherFormats)
 TEST(LoadTetGrid, NamesWhatIsWrongWithTheHeader)
 {
     EXPECT_EQ(error_of(with("ASCII", "ASCI")), "it is 'ASCI', not ASCII or BINARY");
+    EXPECT_EQ(error_of(with("ASCII", "\x1B[2J\xFF")), "it is '?[2J?', not ASCII or BINARY")
+        << "what a terminal would obey is not printed";
     EXPECT_EQ(error_of(with("DATASET", "DATA")), "its header names no DATASET");
     EXPECT_EQ(error_of("# vtk DataFile Version 3.0\n"), "it is '', not ASCII or BINARY");
 }

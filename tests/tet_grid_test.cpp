@@ -116,16 +116,16 @@ TEST(MakeTetGrid, FillsTheBoxWithCellsThatShareTheirFaces)
         ASSERT_TRUE(checked) << checked.error().message;
         // Each cell's volume is rounded by less than 1e-14 of its determinant's terms.
         EXPECT_NEAR(volume_of(grid), 8.0, 1e-11);
-        for (const auto &[face, cells] : faces_of(grid)) {
+        for (const auto &face : faces_of(grid)) {
             const auto on_side = [&](int axis, float side) {
-                return std::ranges::all_of(face, [&, axis, side](std::uint32_t point) {
+                return std::ranges::all_of(face.first, [&, axis, side](std::uint32_t point) {
                     return grid.points[point][axis] == side;
                 });
             };
             bool is_boundary = false;
             for (int axis = 0; axis < 3; ++axis)
                 is_boundary = is_boundary || on_side(axis, -1.0F) || on_side(axis, 1.0F);
-            ASSERT_EQ(cells, is_boundary ? 1 : 2);
+            ASSERT_EQ(face.second, is_boundary ? 1 : 2);
         }
     }
 }
@@ -175,6 +175,16 @@ TEST(MakeTetGrid, HasSliversOfEverySize)
     EXPECT_GT(of_decade.front(), 500);
     EXPECT_GT(of_decade.back(), 100) << "thinner than 1e-5";
     EXPECT_TRUE(std::ranges::is_sorted(of_decade, std::greater()));
+}
+
+TEST(MakeTetGrid, SliversAreNoThinnerThanRoundingAllows)
+{
+    kb::GeneratedGrid wanted;
+    wanted.cubes = 6;
+    wanted.sliver_share = 0.5F;
+    wanted.thinnest = 1e-20F;
+    const auto checked = kb::check_tet_grid(kb::make_tet_grid(wanted));
+    EXPECT_TRUE(checked) << checked.error().message;
 }
 
 TEST(MakeTetGrid, FieldsAreWhatTheyAreCalled)

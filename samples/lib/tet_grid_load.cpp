@@ -49,7 +49,7 @@ static Result<TetGrid> make_grid(LegacyVtk &&vtk)
             const std::int64_t point =
                 vtk.connectivity[static_cast<std::size_t>(vtk.offsets[i] + corner)];
             // Before it is narrowed; check_tet_grid says the same of grids from elsewhere.
-            if (point < 0 || static_cast<std::size_t>(point) >= vtk.points.size())
+            if (static_cast<std::size_t>(point) >= vtk.points.size())
                 return Error{fmt::format("cell {} has point {}, but there are {} points", i, point,
                                          vtk.points.size())};
             grid.cells[i][corner] = static_cast<std::uint32_t>(point);
