@@ -36,6 +36,16 @@ test_unknown_suites() {
     prints bookworm
 }
 
+test_unknown_studies() {
+    local studies
+    for studies in none transparency,none '' ,; do
+        run 2 scripts/bench --studies "$studies"
+        prints "--studies takes transparency, volume or both"
+        lines 1
+    done
+    absent build
+}
+
 test_fuzz_takes_known_targets_and_drivers() {
     run 2 scripts/fuzz textures
     prints textures
