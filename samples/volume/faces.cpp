@@ -19,6 +19,7 @@ struct CellFace {
     std::array<std::uint32_t, 3> key; ///< The points in ascending order.
     glm::uvec3 triangle;
     bool even; ///< Whether the triangle is an even permutation of the key.
+    std::uint32_t cell;
 
     friend bool operator<(const CellFace &a, const CellFace &b)
     {
@@ -26,9 +27,9 @@ struct CellFace {
     }
 };
 
-CellFace make_face(std::uint32_t a, std::uint32_t b, std::uint32_t c)
+CellFace make_face(std::uint32_t cell, std::uint32_t a, std::uint32_t b, std::uint32_t c)
 {
-    CellFace face{{a, b, c}, {a, b, c}, true};
+    CellFace face{{a, b, c}, {a, b, c}, true, cell};
     auto &key = face.key;
     for (const auto &[i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}}) {
         if (key[std::size_t(i)] > key[std::size_t(j)]) {
@@ -43,17 +44,18 @@ std::vector<CellFace> faces_of_cells(const TetGrid &grid)
 {
     std::vector<CellFace> faces;
     faces.reserve(4 * grid.cells.size());
-    for (const glm::uvec4 &cell : grid.cells) {
+    for (std::uint32_t i = 0; i < grid.cells.size(); ++i) {
+        const glm::uvec4 &cell = grid.cells[i];
         const double volume = signed_volume(grid, cell);
         if (volume == 0.0)
             continue;
         auto [a, b, c, d] = std::array{cell.x, cell.y, cell.z, cell.w};
         if (volume < 0.0)
             std::swap(a, b);
-        faces.push_back(make_face(a, c, b));
-        faces.push_back(make_face(a, b, d));
-        faces.push_back(make_face(b, c, d));
-        faces.push_back(make_face(a, d, c));
+        faces.push_back(make_face(i, a, c, b));
+        faces.push_back(make_face(i, a, b, d));
+        faces.push_back(make_face(i, b, c, d));
+        faces.push_back(make_face(i, a, d, c));
     }
     return faces;
 }
@@ -65,24 +67,27 @@ FaceMesh make_face_mesh(const TetGrid &grid, const ScalarField &field)
     std::vector<CellFace> faces = faces_of_cells(grid);
     std::sort(faces.begin(), faces.end());
 
-    FaceMesh mesh{grid.points, field.values, {}, 0};
-    std::vector<glm::uvec3> boundary;
+    FaceMesh mesh{grid.points, field.values, {}, 0, {}};
+    std::vector<CellFace> boundary;
     for (auto first = faces.begin(); first != faces.end();) {
         const auto last = std::find_if(
             first, faces.end(), [first](const CellFace &face) { return face.key != first->key; });
         const auto even = std::find_if(first, last, [](const CellFace &face) { return face.even; });
         // Those seen from one side, then those seen from the other: as many pairs as there are.
         const auto pairs = std::min(even - first, last - even);
-        for (auto face = first; face != first + pairs; ++face)
+        for (auto face = first, other = even; face != first + pairs; ++face, ++other) {
             mesh.triangles.push_back(face->triangle);
-        for (auto face = first + pairs; face != even; ++face)
-            boundary.push_back(face->triangle);
-        for (auto face = even + pairs; face != last; ++face)
-            boundary.push_back(face->triangle);
+            mesh.cells.emplace_back(face->cell, other->cell);
+        }
+        boundary.insert(boundary.end(), first + pairs, even);
+        boundary.insert(boundary.end(), even + pairs, last);
         first = last;
     }
     mesh.interior_count = mesh.triangles.size();
-    mesh.triangles.insert(mesh.triangles.end(), boundary.begin(), boundary.end());
+    for (const CellFace &face : boundary) {
+        mesh.triangles.push_back(face.triangle);
+        mesh.cells.emplace_back(face.cell, FaceMesh::no_cell);
+    }
     return mesh;
 }
 

@@ -4,9 +4,12 @@
 
 #include "tet_grid.hpp"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace kb
@@ -20,6 +23,9 @@ struct FaceMesh {
     /// The first ones are shared by two cells; the others belong to one cell and are the boundary,
     /// counterclockwise seen from outside.
     std::size_t interior_count = 0;
+    /// For each triangle the cell from whose outside it is counterclockwise, and the one beyond it.
+    std::vector<glm::uvec2> cells;
+    static constexpr std::uint32_t no_cell = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// Cells without volume add no faces. Of the faces with the same three points, two that are seen

@@ -58,7 +58,7 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
                           options.budget > 1.0
                               ? kb::subdivide(scene.faces, options.budget, options.split_first)
                               : scene.faces,
-                          scene.range);
+                          scene.range, options.order);
 
     kb::VolumeReport report;
     const auto draw = [&]() -> kb::Status {

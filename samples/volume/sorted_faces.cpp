@@ -4,6 +4,10 @@
 
 #include "radix_sort.hpp"
 
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_precision.hpp>
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,10 +51,14 @@ ScalarRange range_of(std::span<const float> values)
     return {*low, *high > *low ? *high : *low + 1.0F};
 }
 
-SortedFaces::SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range)
+SortedFaces::SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range, FaceOrder order)
     : gl_(&gl), range_(range), array_(gl), vertex_buffer_(gl), index_buffer_(gl),
-      triangles_(mesh.triangles)
+      triangles_(mesh.triangles), interior_count_(mesh.interior_count), order_by_(order)
 {
+    if (order == FaceOrder::cells) {
+        cell_order_.emplace(mesh);
+        seen_.resize(triangles_.size());
+    }
     const float extent = range.high - range.low;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
         vertices_.emplace_back(mesh.positions[i], (mesh.scalars[i] - range.low) / extent);
@@ -93,26 +101,63 @@ void SortedFaces::project(const OrbitCamera &camera, Size size)
     }
 }
 
+/// A face that reaches behind the eye has no place on the picture: what side the eye is on says how
+/// it sees it.
+static Seen see_near_eye(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c, glm::vec3 eye)
+{
+    const glm::dvec3 origin(a);
+    const glm::dvec3 normal = glm::cross(glm::dvec3(b) - origin, glm::dvec3(c) - origin);
+    return glm::dot(normal, glm::dvec3(eye) - origin) > 0.0 ? Seen::counterclockwise
+                                                            : Seen::clockwise;
+}
+
+Seen SortedFaces::see(const glm::uvec3 &triangle, glm::vec3 eye, Size size) const
+{
+    const Projected &a = projected_[triangle.x];
+    const Projected &b = projected_[triangle.y];
+    const Projected &c = projected_[triangle.z];
+    if (!(std::min({a.depth, b.depth, c.depth}) > 0.0F))
+        return see_near_eye(vertices_[triangle.x], vertices_[triangle.y], vertices_[triangle.z],
+                            eye);
+    if (!(covers_center(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), size.width) &&
+          covers_center(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), size.height)))
+        return Seen::never;
+    const std::int64_t area = std::int64_t(b.x - a.x) * std::int64_t(c.y - a.y) -
+                              std::int64_t(c.x - a.x) * std::int64_t(b.y - a.y);
+    return area > 0 ? Seen::counterclockwise : Seen::clockwise;
+}
+
+float SortedFaces::key_of(const glm::uvec3 &triangle) const
+{
+    const float a = projected_[triangle.x].depth;
+    const float b = projected_[triangle.y].depth;
+    const float c = projected_[triangle.z].depth;
+    return order_by_ == FaceOrder::nearest_vertex ? std::min({a, b, c}) : a + b + c;
+}
+
 void SortedFaces::sort(const OrbitCamera &camera, Size size)
 {
     project(camera, size);
-    visible_.clear();
+    const glm::vec3 eye(glm::inverse(camera.view())[3]);
+    // Of the faces that are sorted by their keys: all, or those by which rays leave the grid.
+    keyed_.clear();
     keys_.clear();
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-        const Projected &a = projected_[triangles_[i].x];
-        const Projected &b = projected_[triangles_[i].y];
-        const Projected &c = projected_[triangles_[i].z];
-        const bool before_eye = std::min({a.depth, b.depth, c.depth}) > 0.0F;
-        if (before_eye &&
-            !(covers_center(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), size.width) &&
-              covers_center(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), size.height)))
-            continue;
-        visible_.push_back(static_cast<std::uint32_t>(i));
-        keys_.push_back(a.depth + b.depth + c.depth);
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+        const Seen seen = see(triangles_[i], eye, size);
+        if (cell_order_)
+            seen_[i] = seen;
+        if (cell_order_ ? i >= interior_count_ && seen == Seen::clockwise : seen != Seen::never) {
+            keyed_.push_back(i);
+            keys_.push_back(key_of(triangles_[i]));
+        }
     }
     sort_by_key(keys_, order_);
     for (std::uint32_t &place : order_)
-        place = visible_[place];
+        place = keyed_[place];
+    if (cell_order_) {
+        keyed_.swap(order_);
+        cell_order_->sort(seen_, keyed_, order_);
+    }
 
     std::vector<glm::uvec3> sorted(order_.size());
     std::transform(order_.begin(), order_.end(), sorted.begin(),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "camera.hpp"
+#include "cell_order.hpp"
 #include "faces.hpp"
 #include "gl_objects.hpp"
 #include "transfer_function.hpp"
@@ -10,13 +11,21 @@
 #include <glm/vec4.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace kb
 {
 
-/// The faces in GL buffers, and the order in which they are drawn: front to back by centroid.
+/// What puts faces in order, front to back.
+enum class FaceOrder {
+    centroid,       ///< The depths of their centroids.
+    nearest_vertex, ///< The depths of their nearest vertices.
+    cells           ///< CellOrder.
+};
+
+/// The faces in GL buffers, and the order in which they are drawn: nearly front to back.
 /// Vertex attribute 0 is (x, y, z, s): s is the scalar from 0 to 1 over its range and, on faces of
 /// the boundary, boundary_tag more.
 class SortedFaces
@@ -24,7 +33,8 @@ class SortedFaces
 public:
     static constexpr float boundary_tag = 4.0F;
 
-    SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range);
+    SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range,
+                FaceOrder order = FaceOrder::centroid);
 
     /// Sorts for a view, and leaves out what covers no center of a pixel in it.
     void sort(const OrbitCamera &camera, Size size);
@@ -47,6 +57,8 @@ private:
     };
 
     void project(const OrbitCamera &camera, Size size);
+    Seen see(const glm::uvec3 &triangle, glm::vec3 eye, Size size) const;
+    float key_of(const glm::uvec3 &triangle) const;
 
     const Gl *gl_;
     ScalarRange range_;
@@ -55,9 +67,13 @@ private:
     Buffer index_buffer_;
     std::vector<glm::vec4> vertices_; ///< Those of the interior, then those of the boundary.
     std::vector<glm::uvec3> triangles_;
+    std::size_t interior_count_;
+    FaceOrder order_by_;
+    std::optional<CellOrder> cell_order_; ///< If the order is by cells.
     std::vector<Projected> projected_;
     std::vector<float> keys_;
-    std::vector<std::uint32_t> visible_;
+    std::vector<std::uint32_t> keyed_;
+    std::vector<Seen> seen_;
     std::vector<std::uint32_t> order_;
 };
 

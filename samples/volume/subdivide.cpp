@@ -9,6 +9,7 @@
 #include <array>
 #include <optional>
 #include <queue>
+#include <utility>
 #include <vector>
 
 namespace kb
@@ -95,9 +96,13 @@ public:
                 return piece.face < mesh_.interior_count;
             });
         mesh_.interior_count = static_cast<std::size_t>(boundary - pieces_.begin());
+        const auto cells = std::exchange(mesh_.cells, {});
         mesh_.triangles.clear();
-        for (const Piece &piece : pieces_)
+        for (const Piece &piece : pieces_) {
             mesh_.triangles.push_back(piece.triangle);
+            if (!cells.empty())
+                mesh_.cells.push_back(cells[piece.face]);
+        }
         return std::move(mesh_);
     }
 

@@ -61,6 +61,18 @@ void declare_options(CLI::App &app, VolumeOptions &options)
         ->capture_default_str();
     app.add_flag("--exact", options.exact,
                  "Put every fragment in its place, in as many passes as it takes");
+    app.add_option_function<std::string>(
+           "--order",
+           [&options](const std::string &word) {
+               options.order = word == "cells"     ? FaceOrder::cells
+                               : word == "nearest" ? FaceOrder::nearest_vertex
+                                                   : FaceOrder::centroid;
+           },
+           "Faces are drawn in the order of their centroids, of their nearest vertices, or of the "
+           "cells between them, which is right but where rays leave the grid and come back")
+        ->check(CLI::IsMember({"centroid", "nearest", "cells"}))
+        ->type_name("NAME")
+        ->default_str("centroid");
     app.add_option("--budget", options.budget,
                    "Subdivide faces until there are this many times as many, for less disorder")
         ->check([](const std::string &text) { return check_number(text, 1.0, 64.0); })

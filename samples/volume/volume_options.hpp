@@ -4,6 +4,7 @@
 
 #include "camera.hpp"
 #include "command_line.hpp"
+#include "sorted_faces.hpp"
 #include "subdivide.hpp"
 
 #include <glm/vec3.hpp>
@@ -30,6 +31,7 @@ struct VolumeOptions {
     Size size;
     int k = 6;
     bool exact = false;
+    FaceOrder order = FaceOrder::centroid;
     double budget = 1.0; ///< Triangles that are drawn, as a multiple of the faces.
     SplitFirst split_first = SplitFirst::longest;
     bool measure_disorder = true;
