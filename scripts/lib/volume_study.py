@@ -86,7 +86,8 @@ class Scene:
 
     def draw_reference(self):
         """What is drawn exactly is for the sample to say."""
-        run(RUN, self.study.volume, *self.options, "--no-disorder", "--json", self.path("scene.json"))
+        run(RUN, self.study.volume, *self.options, "--no-disorder",
+            "--json", self.path("scene.json"))
         run(os.path.join(PROJECT, "tests", "integrator", "integrate"),
             "--scene", self.path("scene.json"), "--out", self.path("reference.pfm"))
         self.reference = read_pfm(self.path("reference.pfm"))
@@ -129,7 +130,8 @@ class Study:
     def compare(self, scene):
         """Rows of all methods, which take turns."""
         methods = [("ours", name, options) for name, options in OURS]
-        methods += [("stock", name, ()) for name in VTK if not (self.quick and name == "vtk-zsweep")]
+        methods += [("stock", name, ()) for name in VTK
+                    if not (self.quick and name == "vtk-zsweep")]
         rows = {}
         for turn in range(self.rounds):
             for driver, name, options in methods:
@@ -157,8 +159,8 @@ class Study:
                 row["ms"] += account["ms"]
         for row in rows.values():
             row.update(spread(row.pop("ms")))
-            note(f"{scene.name}: {row['method']} {row['k'] or ''}: {row['ms_median']:.0f} ms, error "
-                 f"{row['err_rmse'] * 255:.2f}/255 (root mean square)")
+            note(f"{scene.name}: {row['method']} {row['k'] or ''}: {row['ms_median']:.0f} ms, "
+                 f"error {row['err_rmse'] * 255:.2f}/255 (root mean square)")
         return list(rows.values())
 
     def accuracy(self, scene):
@@ -187,7 +189,8 @@ def machine(size, rounds):
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         names = [line.split(": ", 1)[1].strip() for line in file if line.startswith("model name")]
     commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"],
-                            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+                            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                            check=False)
     now = datetime.datetime.now(datetime.timezone.utc)
     return {"date": now.strftime("%Y-%m-%dT%H:%M:%SZ"), "commit": commit.stdout.strip(),
             "processor": names[0] if names else "unknown",

@@ -106,7 +106,8 @@ def main(folder):
         kept[-1].draw()
         difference = (kept[-1].pixels() - picture)[inside] * 255
         error = numpy.sqrt((difference ** 2).mean())
-        print(f"{method}: {inside.sum()} pixels inside, root mean square of the error {error:.2f}/255")
+        print(f"{method}: {inside.sum()} pixels inside, root mean square of the error "
+              f"{error:.2f}/255")
         if inside.sum() < 500 or not error < bound:
             print("that is too much")
             wrong = 1
