@@ -16,6 +16,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace kb::integrator
 {
@@ -31,22 +33,19 @@ struct Seen {
     double scalar;
 };
 
-/// On which side an edge passes the ray, and how far: moved aside by e, then by e^2 upwards, the
-/// ray has u - e w instead of u, and v - e^2 w instead of v.
+/// On which side an edge passes the ray, and how far.
 struct Passage {
     double value;
-    double aside;   ///< The derivative by e.
-    double upwards; ///< That by e^2.
     bool left;
 };
 
 Passage pass(const Seen &a, const Seen &b)
 {
     const double value = a.u * b.v - b.u * a.v;
-    const double aside = b.w * a.v - a.w * b.v;
-    const double upwards = a.w * b.u - b.w * a.u;
-    const double decisive = value != 0.0 ? value : aside != 0.0 ? aside : upwards;
-    return {value, aside, upwards, decisive > 0.0};
+    // Moved aside by e and up by e^2 the ray has u - e w in the place of u, and v - e^2 w.
+    const double by_e = b.w * a.v - a.w * b.v;
+    const double by_e_squared = a.w * b.u - b.w * a.u;
+    return {value, (value != 0.0 ? value : by_e != 0.0 ? by_e : by_e_squared) > 0.0};
 }
 
 struct Hit {
@@ -54,21 +53,23 @@ struct Hit {
     double scalar;
 };
 
-/// The point of the face of which (a, b), (b, c) and (c, a) pass on the same side.
-Hit hit_face(const Seen &a, const Seen &b, const Seen &c, const Passage &ab, const Passage &bc,
-             const Passage &ac)
+/// Where the ray meets a face.
+std::optional<Hit> hit_face(const Seen &a, const Seen &b, const Seen &c, const Passage &ab,
+                            const Passage &bc, const Passage &ac)
 {
-    // In a face's plane the ray is beside it: then the derivatives are the coordinates.
-    for (const auto number : {&Passage::value, &Passage::aside, &Passage::upwards}) {
-        const double of_a = bc.*number;
-        const double of_b = -(ac.*number);
-        const double of_c = ab.*number;
-        const double sum = of_a + of_b + of_c; // All of one sign: nothing cancels.
-        if (sum != 0.0)
-            return {(of_a * a.w + of_b * b.w + of_c * c.w) / sum,
-                    (of_a * a.scalar + of_b * b.scalar + of_c * c.scalar) / sum};
-    }
-    return {a.w, a.scalar}; // All of the face is on one line through the eye.
+    if (ab.left != bc.left || ab.left == ac.left)
+        return std::nullopt;
+    // All of one sign: nothing cancels.
+    const double of_a = bc.value;
+    const double of_b = -ac.value;
+    const double of_c = ab.value;
+    const double sum = of_a + of_b + of_c;
+    // The ray is in the face's plane, and so is the eye: a ray moved aside does not meet it. (That
+    // the signs agree, then, is rounding.)
+    if (sum == 0.0)
+        return std::nullopt;
+    return Hit{(of_a * a.w + of_b * b.w + of_c * c.w) / sum,
+               (of_a * a.scalar + of_b * b.scalar + of_c * c.scalar) / sum};
 }
 
 } // namespace
@@ -159,16 +160,12 @@ std::vector<std::vector<RaySegment>> RaySegments::find(int first_row, int row_co
                 const Passage e23 = pass(p[2], p[3]);
                 std::array<Hit, 4> hits{};
                 std::size_t count = 0;
-                const auto try_face = [&](int a, int b, int c, const Passage &ab, const Passage &bc,
-                                          const Passage &ac) {
-                    if (ab.left == bc.left && ab.left != ac.left)
-                        hits[count++] = hit_face(p[std::size_t(a)], p[std::size_t(b)],
-                                                 p[std::size_t(c)], ab, bc, ac);
-                };
-                try_face(0, 1, 2, e01, e12, e02);
-                try_face(0, 1, 3, e01, e13, e03);
-                try_face(0, 2, 3, e02, e23, e03);
-                try_face(1, 2, 3, e12, e23, e13);
+                for (const auto &hit : {hit_face(p[0], p[1], p[2], e01, e12, e02),
+                                        hit_face(p[0], p[1], p[3], e01, e13, e03),
+                                        hit_face(p[0], p[2], p[3], e02, e23, e03),
+                                        hit_face(p[1], p[2], p[3], e12, e23, e13)})
+                    if (hit)
+                        hits[count++] = *hit;
                 if (count != 2) // Past the cell, or through a corner of it.
                     continue;
                 auto [front, back] = hits[0].depth <= hits[1].depth ? std::pair(hits[0], hits[1])
@@ -185,10 +182,9 @@ std::vector<std::vector<RaySegment>> RaySegments::find(int first_row, int row_co
             }
         }
     }
+    // Of segments that do not overlap the middles are in order, also where one has no length.
     for (auto &ray : segments)
-        std::ranges::sort(ray, [](const RaySegment &a, const RaySegment &b) {
-            return a.front != b.front ? a.front < b.front : a.back < b.back;
-        });
+        std::ranges::sort(ray, {}, [](const RaySegment &s) { return s.front + s.back; });
     return segments;
 }
 

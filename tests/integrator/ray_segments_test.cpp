@@ -2,6 +2,7 @@
 //
 // Cells along rays, and pictures, against what is known of a box.
 
+#include "box.hpp"
 #include "integrator.hpp"
 #include "tet_grid.hpp"
 
@@ -39,31 +40,6 @@ Grid make_box(CubeSplit split, unsigned cubes = 6)
 
 constexpr CubeSplit splits[] = {CubeSplit::five, CubeSplit::six, CubeSplit::twenty_four};
 
-/// Where a ray is in a box with center 0: by the planes of its sides, from the eye's coordinates.
-struct Interval {
-    double front;
-    double back;
-
-    double length() const { return std::max(0.0, back - front); }
-};
-Interval cross_box(const View &view, glm::dvec2 device, double half_side)
-{
-    const glm::dvec3 along((device.x + view.projection[2][0]) / view.projection[0][0],
-                           (device.y + view.projection[2][1]) / view.projection[1][1], -1.0);
-    const glm::dmat4 inverse = glm::inverse(view.view);
-    const glm::dvec3 eye(inverse[3]);
-    const glm::dvec3 ray = glm::dmat3(inverse) * along;
-    Interval inside{-std::numeric_limits<double>::infinity(),
-                    std::numeric_limits<double>::infinity()};
-    for (int axis = 0; axis < 3; ++axis) {
-        const double a = (-half_side - eye[axis]) / ray[axis];
-        const double b = (half_side - eye[axis]) / ray[axis];
-        inside.front = std::max(inside.front, std::min(a, b));
-        inside.back = std::min(inside.back, std::max(a, b));
-    }
-    return inside;
-}
-
 /// Coordinates are up to 4 and some tens of operations with doubles lead to a depth, whose rounding
 /// a grazing ray magnifies: rays that enter a side at less than 1e-3 are not compared.
 constexpr double rounding = 1e-11;
@@ -71,59 +47,69 @@ constexpr double rounding = 1e-11;
 const OrbitCamera oblique{.azimuth = 31.0F, .elevation = 22.0F, .distance = 4.5F};
 constexpr Size picture_size{96, 72};
 
+/// Calls `look` with the place and the segments of each pixel's ray.
+template <class Look>
+void for_each_ray(const Grid &grid, const View &view, Look look)
+{
+    const RaySegments rays(grid.cells(), view);
+    const auto all = rays.find(0, view.size.height);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const int x = static_cast<int>(i) % view.size.width;
+        const int y = static_cast<int>(i) / view.size.width;
+        SCOPED_TRACE(testing::Message() << x << ", " << y);
+        look(rays.device_coordinates(x, y), all[i]);
+    }
+}
+
+/// The segments join, bit for bit unless a gap is allowed, from one end of the chord to the other.
+void expect_chord(const std::vector<RaySegment> &segments, const Interval &chord, double gap = 0.0)
+{
+    if (segments.empty()) {
+        EXPECT_LT(chord.depth(), rounding);
+        return;
+    }
+    EXPECT_NEAR(segments.front().front, chord.front, rounding);
+    EXPECT_NEAR(segments.back().back, chord.back, rounding);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        if (i > 0) {
+            EXPECT_NEAR(segments[i].front, segments[i - 1].back, gap);
+            EXPECT_NEAR(segments[i].scalar_front, segments[i - 1].scalar_back, gap);
+        }
+        EXPECT_LE(segments[i].front, segments[i].back);
+        sum += segments[i].back - segments[i].front;
+    }
+    EXPECT_NEAR(sum, chord.depth(), rounding);
+}
+
+/// x at a depth of a ray.
+double place_on_ray(const View &view, glm::dvec2 device, double w)
+{
+    // z of clip coordinates follows from w.
+    const double z = view.projection[2][2] * -w + view.projection[3][2];
+    return (glm::inverse(view.projection * view.view) * glm::dvec4(device * w, z, w)).x;
+}
+
 TEST(IntegratorRays, SegmentsOfABoxAreItsChordWithoutGap)
 {
     const View view = make_view(oblique, picture_size);
     for (const CubeSplit split : splits) {
-        const Grid box = make_box(split);
-        const RaySegments rays(box.cells(), view);
-        const auto all = rays.find(0, picture_size.height);
         std::size_t inside = 0;
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            const int x = static_cast<int>(i) % picture_size.width;
-            const int y = static_cast<int>(i) / picture_size.width;
-            const Interval chord = cross_box(view, rays.device_coordinates(x, y), 1.0);
-            const auto &segments = all[i];
-            if (segments.empty()) {
-                EXPECT_LT(chord.length(), rounding) << x << ", " << y;
-                continue;
-            }
-            ++inside;
-            EXPECT_NEAR(segments.front().front, chord.front, rounding) << x << ", " << y;
-            EXPECT_NEAR(segments.back().back, chord.back, rounding) << x << ", " << y;
-            double sum = 0.0;
-            for (std::size_t s = 0; s < segments.size(); ++s) {
-                if (s > 0) {
-                    EXPECT_EQ(segments[s].front, segments[s - 1].back);
-                    EXPECT_EQ(segments[s].scalar_front, segments[s - 1].scalar_back);
-                }
-                EXPECT_LE(segments[s].front, segments[s].back);
-                sum += segments[s].back - segments[s].front;
-            }
-            EXPECT_NEAR(sum, chord.length(), rounding);
-        }
-        EXPECT_GT(inside, all.size() / 4);
+        for_each_ray(make_box(split), view, [&](glm::dvec2 device, const auto &segments) {
+            expect_chord(segments, cross_box(view, device, 1.0));
+            inside += segments.empty() ? 0 : 1;
+        });
+        EXPECT_GT(inside, 96U * 72U / 4U);
     }
 }
 
 TEST(IntegratorRays, ScalarsAreThoseOfThePlace)
 {
     const View view = make_view(oblique, picture_size);
-    const glm::dmat4 inverse = glm::inverse(view.projection * view.view);
-    const Grid box = make_box(CubeSplit::five);
-    const RaySegments rays(box.cells(), view);
-    const auto all = rays.find(0, picture_size.height);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const glm::dvec2 device = rays.device_coordinates(static_cast<int>(i) % picture_size.width,
-                                                          static_cast<int>(i) / picture_size.width);
-        for (const RaySegment &segment : all[i]) {
-            // The place on the ray with this w: z of clip coordinates follows from w.
-            const double w = segment.back;
-            const double z = view.projection[2][2] * -w + view.projection[3][2];
-            const double x = (inverse * glm::dvec4(device * w, z, w)).x;
-            EXPECT_NEAR(segment.scalar_back, x, rounding);
-        }
-    }
+    for_each_ray(make_box(CubeSplit::five), view, [&](glm::dvec2 device, const auto &segments) {
+        for (const RaySegment &segment : segments)
+            EXPECT_NEAR(segment.scalar_back, place_on_ray(view, device, segment.back), rounding);
+    });
 }
 
 TEST(IntegratorRays, SegmentsFillTheVolume)
@@ -150,25 +136,14 @@ TEST(IntegratorRays, SegmentsFillTheVolume)
 TEST(IntegratorRays, RaysThroughPointsAndEdges)
 {
     // Seen along an axis, with a ray through the middle: rays lie in faces, meet edges and corners.
-    const OrbitCamera straight{.distance = 4.0F};
-    const Size odd{65, 65};
-    const View view = make_view(straight, odd);
+    // Where faces meet at the same depth rounding decides which of them is in front.
+    const View view = make_view({.distance = 4.0F}, {65, 65});
     for (const CubeSplit split : splits) {
         const Grid box(
             make_tet_grid({.cubes = 4, .split = split, .jitter = 0.0F, .sliver_share = 0.0F}));
-        const RaySegments rays(box.cells(), view);
-        const auto all = rays.find(0, odd.height);
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            const Interval chord =
-                cross_box(view,
-                          rays.device_coordinates(static_cast<int>(i) % odd.width,
-                                                  static_cast<int>(i) / odd.width),
-                          1.0);
-            double sum = 0.0;
-            for (const RaySegment &segment : all[i])
-                sum += segment.back - segment.front;
-            EXPECT_NEAR(sum, chord.length(), rounding) << i % 65 << ", " << i / 65;
-        }
+        for_each_ray(box, view, [&](glm::dvec2 device, const auto &segments) {
+            expect_chord(segments, cross_box(view, device, 1.0), rounding);
+        });
     }
 }
 
@@ -184,17 +159,19 @@ TEST(IntegratorRays, HolesAreLeftOut)
     const View view = make_view(oblique, picture_size);
     const RaySegments rays(box.cells(), view);
     const Medium medium({{0.0, glm::dvec3(1.0), 1.0}});
-    const Picture picture = integrate({box.cells(), view, medium});
+    constexpr double background = 0.25;
+    const Picture picture = integrate({box.cells(), view, medium, glm::dvec3(background)});
     std::size_t through_hole = 0;
     for (int y = 0; y < picture_size.height; ++y)
         for (int x = 0; x < picture_size.width; ++x) {
             const glm::dvec2 device = rays.device_coordinates(x, y);
-            const double hole = cross_box(view, device, 0.5).length();
-            const double chord = cross_box(view, device, 1.0).length() - hole;
+            const double hole = cross_box(view, device, 0.5).depth();
+            const double chord = cross_box(view, device, 1.0).depth() - hole;
             through_hole += hole > 0.1 ? 1 : 0;
             EXPECT_NEAR(picture.at(x, y).w, -std::expm1(-chord * view.length_per_depth(device)),
                         rounding);
-            EXPECT_NEAR(picture.at(x, y).r, picture.at(x, y).w, rounding);
+            EXPECT_NEAR(picture.at(x, y).r, std::lerp(background, 1.0, picture.at(x, y).w),
+                        rounding);
         }
     EXPECT_GT(through_hole, 100U);
 }
@@ -202,23 +179,14 @@ TEST(IntegratorRays, HolesAreLeftOut)
 TEST(IntegratorRays, BeginAtTheNearPlane)
 {
     // The eye is in the box.
-    const OrbitCamera within{.azimuth = 31.0F, .elevation = 22.0F, .distance = 0.5F};
-    View view = make_view(within, picture_size);
-    const Grid box = make_box(CubeSplit::six);
+    View view = make_view({.azimuth = 31.0F, .elevation = 22.0F, .distance = 0.5F}, picture_size);
     for (const double near : {0.0, 0.3}) {
         view.near = near;
-        const RaySegments rays(box.cells(), view);
-        const auto all = rays.find(0, picture_size.height);
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            const Interval chord =
-                cross_box(view,
-                          rays.device_coordinates(static_cast<int>(i) % picture_size.width,
-                                                  static_cast<int>(i) / picture_size.width),
-                          1.0);
-            ASSERT_FALSE(all[i].empty());
-            EXPECT_NEAR(all[i].front().front, near, rounding);
-            EXPECT_NEAR(all[i].back().back, chord.back, rounding);
-        }
+        for_each_ray(make_box(CubeSplit::six), view, [&](glm::dvec2 device, const auto &segments) {
+            ASSERT_FALSE(segments.empty());
+            expect_chord(segments, {near, cross_box(view, device, 1.0).back});
+            EXPECT_NEAR(segments.front().scalar_front, place_on_ray(view, device, near), rounding);
+        });
     }
 }
 
@@ -251,6 +219,18 @@ TEST(IntegratorRays, PlacesAreThoseOfTheCamera)
     const double tangent = std::tan(22.5 * std::acos(-1.0) / 180.0);
     EXPECT_NEAR(view.length_per_depth({-1.0, 1.0}), std::sqrt(1.0 + 5.0 * tangent * tangent), 1e-6);
     EXPECT_NEAR(view.pixel_area(), std::pow(2.0 * tangent / 100.0, 2), 1e-9);
+}
+
+TEST(IntegratorRays, MovedByPixelsTheyAreThoseOfOtherPixels)
+{
+    const View view = make_view(oblique, picture_size);
+    const Medium medium({{-1.0, {1.0, 0.2, 0.0}, 0.1}, {1.0, {0.0, 0.5, 1.0}, 3.0}});
+    const Grid box = make_box(CubeSplit::five);
+    const Picture still = integrate({box.cells(), view, medium});
+    const Picture moved = integrate({box.cells(), view, medium}, {7.0, -5.0});
+    for (int y = 5; y < picture_size.height; ++y)
+        for (int x = 0; x + 7 < picture_size.width; ++x)
+            EXPECT_EQ(moved.at(x, y), still.at(x + 7, y - 5));
 }
 
 TEST(IntegratorRays, BoundsHoldMovedRays)

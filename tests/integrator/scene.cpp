@@ -13,10 +13,10 @@ namespace kb::integrator
 
 using nlohmann::json;
 
-/// JSON has no infinity: it is null.
+/// JSON has no infinity: it is a string.
 static double extinction_of(const json &number)
 {
-    return number.is_null() ? std::numeric_limits<double>::infinity() : number.get<double>();
+    return number == "inf" ? std::numeric_limits<double>::infinity() : number.get<double>();
 }
 
 static glm::dvec3 color_of(const json &list, std::size_t first)
@@ -48,11 +48,10 @@ Result<Scene> load_scene(const std::filesystem::path &path)
         return Error{fmt::format("cannot read {}", path.string())};
     try {
         const json document = json::parse(file);
-        // An empty name is the generated grid.
-        const std::string name = document.at("grid");
+        const json &name = document.at("grid"); // null: the generated grid
         GridRepairs repairs;
-        auto grid = name.empty() ? Result<TetGrid>(make_tet_grid())
-                                 : load_and_repair_tet_grid(name, repairs);
+        auto grid = name.is_null() ? Result<TetGrid>(make_tet_grid({.cubes = document.at("cubes")}))
+                                   : load_and_repair_tet_grid(name.get<std::string>(), repairs);
         if (!grid)
             return grid.error();
         fit_to_unit_sphere(*grid);

@@ -15,8 +15,8 @@ using namespace kb::integrator;
 using kb::test::TempDirectory;
 
 constexpr const char *scene_text = R"({
-  "grid": "", "field": "distance", "center": [0, 0, 0], "radius": 1.7320508,
-  "transfer": [[0.0, 1.0, 0.5, 0.25, 2.0], [0.5, 0.0, 0.5, 0.25, null]],
+  "grid": null, "cubes": 4, "field": "distance", "center": [0, 0, 0], "radius": 1.7320508,
+  "transfer": [[0.0, 1.0, 0.5, 0.25, 2.0], [0.5, 0.0, 0.5, 0.25, "inf"]],
   "camera": {"azimuth": 30, "elevation": -20, "distance": 3.5, "field_of_view": 40},
   "size": [32, 24], "background": [0.25, 0.5, 1.0]})";
 
@@ -31,7 +31,7 @@ TEST(IntegratorScene, IsReadAndDrawn)
     ASSERT_EQ(pieces.size(), 3U);
     EXPECT_EQ(pieces[1].low.color, glm::dvec3(1.0, 0.5, 0.25));
     EXPECT_EQ(pieces[1].low.extinction, 2.0);
-    EXPECT_TRUE(std::isinf(pieces[1].high.extinction)) << "null is infinity";
+    EXPECT_TRUE(std::isinf(pieces[1].high.extinction));
 
     // The corner shows the background, the middle what is opaque from the first cell on.
     const Picture picture = integrate(scene->volume());
@@ -44,7 +44,7 @@ TEST(IntegratorScene, SaysWhatIsMissing)
 {
     const TempDirectory directory;
     EXPECT_FALSE(load_scene(directory / "none.json"));
-    for (const auto &[from, to] : {std::pair("\"grid\": \"\"", "\"grid\": \"none.vtk\""),
+    for (const auto &[from, to] : {std::pair("\"grid\": null", "\"grid\": \"none.vtk\""),
                                    std::pair("distance\", \"center", "no-field\", \"center"),
                                    std::pair("\"transfer\"", "\"transport\""),
                                    std::pair("[32, 24]", "[32]"), std::pair("1.0]}", "1.0}")}) {

@@ -124,13 +124,8 @@ Light integrate_segment(const Medium &medium, double scalar_front, double scalar
 {
     const auto &pieces = medium.pieces();
     const bool rising = scalar_front <= scalar_back;
-    // The piece in which the segment begins: towards its back if it begins between two.
     std::size_t i = 0;
-    const auto is_behind = [&](const Piece &piece) {
-        return rising && scalar_front < scalar_back ? piece.high.value <= scalar_front
-                                                    : piece.high.value < scalar_front;
-    };
-    while (i + 1 < pieces.size() && is_behind(pieces[i]))
+    while (i + 1 < pieces.size() && pieces[i].high.value <= scalar_front)
         ++i;
     Light light;
     double scalar = scalar_front;

@@ -167,6 +167,7 @@ TEST(IntegratorSegment, RangeOfTheExponential)
     EXPECT_EQ(opaque.alpha(), 1.0);
     // From clear to infinite: the color where it begins; what is behind is not seen.
     const Medium wall({{0.0, {1.0, 0.0, 0.0}, 0.0}, {1.0, {0.0, 1.0, 0.0}, infinity}});
+    EXPECT_EQ(integrate_segment(wall, 0.0, 0.0, 1.0).alpha(), 0.0);
     Light light = integrate_segment(wall, 0.0, 1.0, 1.0);
     light.append({{1.0, 1.0, 1.0}, 1.0});
     EXPECT_EQ(light.color, glm::dvec3(1.0, 0.0, 0.0));
