@@ -11,7 +11,7 @@ std::vector<Case> all_cases()
 {
     std::vector<Case> cases;
     for (auto list : {coplanar_cases(), depth_cases(), coverage_cases(), value_cases(),
-                      overflow_cases(), mixture_cases()})
+                      overflow_cases(), mixture_cases(), volume_cases()})
         std::ranges::move(list, std::back_inserter(cases));
     std::ranges::stable_sort(cases, {}, &Case::number);
     std::ranges::move(invariance_cases(), std::back_inserter(cases));

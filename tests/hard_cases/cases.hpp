@@ -37,6 +37,7 @@ std::vector<Case> coverage_cases(); ///< 9, 24
 std::vector<Case> value_cases();    ///< 10, 12, 13
 std::vector<Case> overflow_cases(); ///< 11
 std::vector<Case> mixture_cases();  ///< 25
+std::vector<Case> volume_cases();   ///< 14 to 16, 22, 23
 std::vector<Case> invariance_cases();
 
 /// In the order of their numbers, invariances last.

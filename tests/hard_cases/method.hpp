@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace kb::hard
 {
@@ -72,6 +73,9 @@ public:
     }
 
     void set_flaw(Flaw flaw) { flaw_ = flaw; }
+
+    /// The flaw, for what is drawn by other means than this: it is applied then.
+    Flaw take_flaw() { return std::exchange(flaw_, Flaw::none); }
 
     /// Of all layers that were drawn: the same if all bits were the same.
     std::uint64_t digest() const { return digest_; }

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+//
+// Volumes for the hard cases, drawn by the renderers of samples/volume: the exact one is depth
+// peeling with continuation, the other one a k-buffer program.
+
+#pragma once
+
+#include "method.hpp"
+
+#include "faces.hpp"
+#include "image.hpp"
+#include "transfer_function.hpp"
+
+#include <span>
+#include <vector>
+
+namespace kb::hard
+{
+
+/// Where a plane across the view lies, and what the scalar is there.
+struct Level {
+    double depth; ///< From the plane of the eye.
+    float scalar;
+};
+
+/// Planes across the view, from the nearest on, between which the scalar is linear: the first is
+/// where rays enter, from the last they leave. No planes are cells of their own, so the faces stand
+/// for cells of any shape.
+FaceMesh make_slabs(std::span<const Level> levels, const OrbitCamera &camera);
+
+/// `count` planes at equal distances, scalars from `first` to `last`.
+std::vector<Level> make_levels(int count, double front, double back, float first = 0.0F,
+                               float last = 1.0F);
+
+/// The same extinction at all scalars, and colors from one to the other.
+TransferFunction make_uniform_transfer(float extinction, glm::vec3 at_0, glm::vec3 at_1);
+
+/// Draws in front of black, top row first; with the method's flaw, a face is lost.
+ImageRgbaF draw_volume(const Gl &gl, Method &method, const Shape &shape, const FaceMesh &mesh,
+                       const TransferFunction &transfer, const OrbitCamera &camera,
+                       glm::vec3 background = glm::vec3(0.0F));
+
+} // namespace kb::hard
