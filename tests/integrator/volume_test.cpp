@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+//
+// The sample `volume`, in processes of its own, against the integrator.
+
+#include "scene.hpp"
+
+#include "image.hpp"
+#include "process.hpp"
+#include "temp_directory.hpp"
+#include "tet_grid_file.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+namespace
+{
+
+using namespace kb;
+using namespace kb::test;
+
+class AgainstIntegrator : public testing::Test
+{
+protected:
+    struct Drawing {
+        ImageRgbaF picture;
+        std::string file; ///< The picture's, byte for byte.
+        std::filesystem::path scene;
+    };
+
+    /// Runs `volume`. A failure is the test's.
+    Drawing draw(std::vector<std::string> arguments, const std::string &driver = "llvmpipe")
+    {
+        const auto floats = directory_ / "volume.pfm";
+        const auto json = directory_ / "volume.json";
+        arguments.insert(arguments.begin(), KBUFFER_VOLUME);
+        for (const std::string &argument :
+             {std::string("--no-disorder"), std::string("--float-out"), floats.string(),
+              std::string("--json"), json.string()})
+            arguments.push_back(argument);
+        auto variables = mesa_environment(patched_prefix());
+        variables["GALLIUM_DRIVER"] = driver;
+        const ProcessResult result = run(arguments, variables);
+        EXPECT_EQ(result.status, 0) << result.err;
+        auto picture = read_pfm(floats);
+        if (result.status != 0 || !picture) {
+            ADD_FAILURE() << "there is no picture";
+            return {};
+        }
+        std::ifstream file(floats, std::ios::binary);
+        return {*std::move(picture), {std::istreambuf_iterator<char>(file), {}}, json};
+    }
+
+    /// The promise is one step of 255. llvmpipe moves corners by up to 1/512 pixel along each axis,
+    /// so a pixel may show what a ray beside its center sees; softpipe, which walks edges in
+    /// floats, rounds places by less.
+    static void expect_right(const Drawing &drawing)
+    {
+        const auto scene = integrator::load_scene(drawing.scene);
+        ASSERT_TRUE(scene) << scene.error().message;
+        const auto bounds = integrator::integrate_bounds(scene->volume(), 1.0 / 512.0);
+        const ImageRgbaF &picture = drawing.picture;
+        ASSERT_EQ(picture.pixels.size(), bounds.low.pixels.size());
+        std::size_t wrong = 0;
+        std::size_t seen = 0;
+        double most = 0.0;
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+            double off = 0.0;
+            for (int c = 0; c < 3; ++c) {
+                const auto value = static_cast<double>(picture.pixels[i][c]);
+                const double beyond =
+                    std::max(value - bounds.high.pixels[i][c], bounds.low.pixels[i][c] - value);
+                off = std::isnan(value) ? 1.0 : std::max(off, beyond);
+            }
+            wrong += off > 1.0 / 255.0 ? 1 : 0;
+            seen += bounds.high.pixels[i].w > 0.02 ? 1 : 0;
+            most = std::max(most, off);
+        }
+        EXPECT_EQ(wrong, 0U) << "pixels; the worst is off by " << most * 255.0 << "/255";
+        EXPECT_GT(seen, picture.pixels.size() / 8) << "enough of the picture shows the volume";
+    }
+
+    TempDirectory directory_;
+};
+
+/// Where scripts/fetch-data put a grid; an empty path if it is not there.
+std::filesystem::path data_set(const std::string &name)
+{
+    const char *folder = std::getenv("KBUFFER_DATA");
+    const auto path = std::filesystem::path(folder ? folder : "") / (name + ".vtk");
+    return folder && std::filesystem::exists(path) ? path : std::filesystem::path();
+}
+
+TEST_F(AgainstIntegrator, GeneratedGrid)
+{
+    for (const char *transfer : {"haze", "shells"}) {
+        SCOPED_TRACE(transfer);
+        expect_right(draw({"--exact", "--transfer", transfer, "--size", "120x100", "--azimuth",
+                           "40", "--elevation", "20"}));
+        expect_right(draw({"--exact", "--transfer", transfer, "--size", "50x60", "--azimuth", "-75",
+                           "--elevation", "-50"},
+                          "softpipe"));
+    }
+}
+
+TEST_F(AgainstIntegrator, GeneratedGridFromEverySide)
+{
+    for (const char *azimuth : {"0", "120", "240"})
+        for (const char *elevation : {"-90", "0", "45"}) {
+            SCOPED_TRACE(fmt::format("{} {}", azimuth, elevation));
+            expect_right(draw({"--exact", "--k", "24", "--cubes", "8", "--size", "64x64",
+                               "--azimuth", azimuth, "--elevation", elevation}));
+        }
+}
+
+TEST_F(AgainstIntegrator, OtherLensesAndBackgrounds)
+{
+    expect_right(draw({"--exact", "--size", "80x60", "--distance", "1.8", "--field-of-view", "70",
+                       "--background", "0,0.5,0.25"}));
+    expect_right(draw({"--exact", "--size", "60x80", "--distance", "12", "--field-of-view", "9",
+                       "--background", "0,0,0"}));
+}
+
+TEST_F(AgainstIntegrator, LargeKIsRight)
+{
+    // Of the generated grid no fragment is more than 32 places late.
+    expect_right(draw({"--k", "32", "--size", "120x100", "--azimuth", "40", "--elevation", "20"}));
+}
+
+TEST_F(AgainstIntegrator, OneCell)
+{
+    // Seen from a side, so that the scalar rises and falls along the rays.
+    const TetGrid cell{
+        {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}},
+        {{0, 1, 2, 3}},
+        {{"s", {0.0F, 1.0F, 0.25F, 0.5F}}}};
+    const auto path = directory_.write("cell.vtk", vtk_file(cell, VtkForm::binary));
+    for (const char *azimuth : {"-60", "10", "100"})
+        expect_right(
+            draw({"--exact", "--grid", path, "--size", "64x64", "--azimuth", azimuth, "--elevation",
+                  "25", "--transfer-points", "0 1 0 0 0.5; 0.5 0 1 0 4; 1 0 0 1 1"}));
+}
+
+TEST_F(AgainstIntegrator, HolesAreEmpty)
+{
+    // A box without its middle, and without a corner: rays leave it and enter again.
+    TetGrid grid = make_tet_grid({.cubes = 4});
+    std::erase_if(grid.cells, [&](const glm::uvec4 &cell) {
+        glm::vec3 middle(0.0F);
+        for (int i = 0; i < 4; ++i)
+            middle += 0.25F * grid.points[cell[i]];
+        const bool inner =
+            std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)}) < 0.5F;
+        return inner || (middle.x > 0.2F && middle.y > 0.2F && middle.z > 0.2F);
+    });
+    const auto path = directory_.write("holes.vtk", vtk_file(grid, VtkForm::binary));
+    for (const char *azimuth : {"30", "200"})
+        expect_right(draw({"--exact", "--grid", path, "--repair", "--size", "80x80", "--azimuth",
+                           azimuth, "--elevation", "35"}));
+}
+
+TEST_F(AgainstIntegrator, CellsWithoutVolumeChangeNoBit)
+{
+    const TetGrid grid = make_tet_grid({.cubes = 5});
+    TetGrid with_flat = grid;
+    with_flat.cells.clear();
+    for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+        const glm::uvec4 &cell = grid.cells[i];
+        if (i % 3 == 0) // A face twice over.
+            with_flat.cells.emplace_back(cell[0], cell[1], cell[2], cell[i % 2]);
+        with_flat.cells.push_back(cell);
+        if (i % 5 == 0) // Nothing but an edge.
+            with_flat.cells.emplace_back(cell[3], cell[2], cell[3], cell[2]);
+    }
+    const auto usual = directory_.write("usual.vtk", vtk_file(grid, VtkForm::binary));
+    const auto flat = directory_.write("flat.vtk", vtk_file(with_flat, VtkForm::binary));
+    for (const std::vector<std::string> &way :
+         {std::vector<std::string>{"--exact"}, {"--k", "6"}, {"--k", "12"}}) {
+        std::vector<std::string> arguments{"--size",      "96x96", "--azimuth", "25",
+                                           "--elevation", "15",    "--repair",  "--grid"};
+        arguments.insert(arguments.begin(), way.begin(), way.end());
+        arguments.push_back(usual);
+        const Drawing expected = draw(arguments);
+        arguments.back() = flat;
+        EXPECT_EQ(draw(arguments).file, expected.file) << way.front();
+    }
+}
+
+TEST_F(AgainstIntegrator, DataSets)
+{
+    // With KBUFFER_FULL as large as the benchmark draws them.
+    const char *full = std::getenv("KBUFFER_FULL");
+    const std::string size = full && *full ? "512x512" : "128x128";
+    for (const char *name : {"bluntfin", "combustor"}) {
+        const auto path = data_set(name);
+        if (path.empty())
+            GTEST_SKIP() << name << ".vtk is not in KBUFFER_DATA: scripts/fetch-data";
+        for (const char *transfer : {"haze", "shells"}) {
+            SCOPED_TRACE(fmt::format("{} {}", name, transfer));
+            expect_right(draw({"--exact", "--k", "32", "--grid", path, "--transfer", transfer,
+                               "--size", size, "--azimuth", "30", "--elevation", "30"}));
+        }
+    }
+}
+
+} // namespace
