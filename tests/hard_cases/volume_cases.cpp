@@ -85,7 +85,7 @@ Outcome small_optical_depths(const Gl &gl, Method &method, const Shape &shape)
     Outcome outcome;
     for (const double each : {1e-4, 1e-5}) {
         const double extinction = count * each / (back - front);
-        const auto picture = draw_volume(gl, method, shape, mesh, white(extinction), straight);
+        const auto picture = VolumeDrawer(gl, method, shape, {white(extinction)}).draw(mesh);
         // Of the rays about the middle, whose length is that between the planes.
         const double middle = picture.at(shape.size.width / 2, shape.size.height / 2).w;
         const double longer =
@@ -169,15 +169,12 @@ Outcome no_length(const Gl &gl, Method &method, const Shape &shape)
     Outcome outcome;
     constexpr int planes = 9;
     const FaceMesh slabs = make_varied_slabs(planes);
-    const TransferFunction transfer = varied_transfer();
-    const auto draw_slabs = [&](const FaceMesh &mesh) {
-        return draw_volume(gl, method, shape, mesh, transfer, straight);
-    };
-    const ImageRgbaF usual = draw_slabs(slabs);
+    VolumeDrawer across(gl, method, shape, {varied_transfer()});
+    const ImageRgbaF usual = across.draw(slabs);
     double changed = 0.0;
     for (std::size_t face = 0; face < slabs.interior_count; face += 2)
         for (const int times : {1, 3})
-            changed += changed_pixels(draw_slabs(repeat_faces(slabs, face, 2, times)), usual);
+            changed += changed_pixels(across.draw(repeat_faces(slabs, face, 2, times)), usual);
     outcome.push_back({"each of 7 planes twice and 4 times: pixels that change, %", 0.0, changed});
     append_extremes(outcome, "alpha of the planes, between 0 and 1", 0.5,
                     pixel_extremes(usual, [](int, int, const glm::vec4 &p) { return p.w; }), 0.49);
@@ -185,13 +182,11 @@ Outcome no_length(const Gl &gl, Method &method, const Shape &shape)
     const TetGrid box = make_box(CubeSplit::five);
     const ScalarField field = unit_field(box);
     const FaceMesh faces = make_face_mesh(box, field);
-    const auto draw_box = [&](const FaceMesh &mesh) {
-        return draw_volume(gl, method, shape, mesh, transfer, oblique);
-    };
-    const ImageRgbaF usual_box = draw_box(faces);
+    VolumeDrawer aslant(gl, method, shape, {varied_transfer(), oblique});
+    const ImageRgbaF usual_box = aslant.draw(faces);
     outcome.push_back(
         {"all faces between cells of a box twice: pixels that change, %", 0.0,
-         changed_pixels(draw_box(repeat_faces(faces, 0, faces.interior_count, 1)), usual_box)});
+         changed_pixels(aslant.draw(repeat_faces(faces, 0, faces.interior_count, 1)), usual_box)});
     TetGrid with_flat = box;
     for (std::size_t i = 0; i < box.cells.size(); ++i) {
         const glm::uvec4 &cell = box.cells[i];
@@ -199,7 +194,7 @@ Outcome no_length(const Gl &gl, Method &method, const Shape &shape)
                                glm::uvec4(cell[0], cell[1], cell[2], cell[i % 3]));
     }
     outcome.push_back({"a cell without volume before each cell: pixels that change, %", 0.0,
-                       changed_pixels(draw_box(make_face_mesh(with_flat, field)), usual_box)});
+                       changed_pixels(aslant.draw(make_face_mesh(with_flat, field)), usual_box)});
     return outcome;
 }
 
@@ -213,25 +208,26 @@ Outcome range_of_exponential(const Gl &gl, Method &method, const Shape &shape)
     constexpr glm::vec3 color(0.25F, 0.5F, 1.0F);
     const double tolerance = 8.0 * std::ldexp(1.0, -24);
     const FaceMesh mesh = make_slabs(make_levels(5, front, back), straight);
-    const auto draw = [&](const TransferFunction &transfer) {
-        return draw_volume(gl, method, shape, mesh, transfer, straight, background);
+    const auto draw = [&](const FaceMesh &drawn, const TransferFunction &transfer) {
+        return VolumeDrawer(gl, method, shape, {transfer, straight, background}).draw(drawn);
     };
     const auto alpha = [](int, int, const glm::vec4 &pixel) { return pixel.w; };
     const auto red = [](int, int, const glm::vec4 &pixel) { return pixel.x; };
     Outcome outcome;
     for (const float extinction : {100.0F, 1e30F, infinity}) {
-        const auto picture = draw(make_uniform_transfer(extinction, color, color));
+        const auto picture = draw(mesh, make_uniform_transfer(extinction, color, color));
         append_extremes(outcome, fmt::format("extinction {}: alpha", extinction), 1.0,
                         pixel_extremes(picture, alpha));
         append_extremes(outcome, fmt::format("extinction {}: red", extinction), 0.25,
                         pixel_extremes(picture, red), tolerance);
     }
-    const auto clear = draw(make_uniform_transfer(0.0F, color, color));
+    const auto clear = draw(mesh, make_uniform_transfer(0.0F, color, color));
     append_extremes(outcome, "extinction 0: alpha", 0.0, pixel_extremes(clear, alpha));
     append_extremes(outcome, "extinction 0: red is the background's", background.x,
                     pixel_extremes(clear, red));
-    // Clear in front, then a wall. Only the wall's color is red.
-    const auto wall = draw(must(TransferFunction::make({{0.0F, {0.0F, 1.0F, 0.0F}, 0.0F},
+    // In one cell, clear in front, then a wall. Only the wall's color is red.
+    const auto wall = draw(make_slabs(make_levels(2, front, back), straight),
+                           must(TransferFunction::make({{0.0F, {0.0F, 1.0F, 0.0F}, 0.0F},
                                                         {0.5F, {0.0F, 1.0F, 0.0F}, 0.0F},
                                                         {0.5F, {1.0F, 0.0F, 0.0F}, infinity},
                                                         {1.0F, {1.0F, 0.0F, 0.0F}, infinity}})));
@@ -320,8 +316,8 @@ Outcome thin_cells(const Gl &gl, Method &method, const Shape &shape)
         const TetGrid box = make_box(split);
         const ScalarField field = unit_field(box);
         const BoxChords chords(box, shape.size);
-        const auto picture =
-            draw_volume(gl, method, shape, make_face_mesh(box, field), white(extinction), oblique);
+        const auto picture = VolumeDrawer(gl, method, shape, {white(extinction), oblique})
+                                 .draw(make_face_mesh(box, field));
         const auto segments = static_cast<double>(deepest(box, field, shape.size));
         const double tolerance =
             segments * 2.0 * std::ldexp(1.0, -22) + 2.0 * std::ldexp(1.0, -24) / 0.3;
@@ -356,6 +352,7 @@ Outcome preintegration(const Gl &gl, Method &method, const Shape &shape)
     for (const double extinction : {0.1, 1.0, 10.0}) {
         const auto transfer = make_uniform_transfer(static_cast<float>(extinction), glm::vec3(0.0F),
                                                     glm::vec3(1.0F, 0.0F, 0.0F));
+        VolumeDrawer drawer(gl, method, shape, {transfer});
         for (const bool rising : {true, false}) {
             const auto expected = [&](int x, int y) {
                 const double depth = extinction * (back - front) * length(x, y);
@@ -366,7 +363,7 @@ Outcome preintegration(const Gl &gl, Method &method, const Shape &shape)
                 const FaceMesh mesh = make_slabs(
                     make_levels(cut + 1, front, back, rising ? 0.0F : 1.0F, rising ? 1.0F : 0.0F),
                     straight);
-                const auto picture = draw_volume(gl, method, shape, mesh, transfer, straight);
+                const auto picture = drawer.draw(mesh);
                 append_extremes(
                     outcome,
                     fmt::format("extinction {}, {} emission, cut in {}: color less the closed form",

@@ -5,7 +5,6 @@
 #include "gl_scene.hpp"
 #include "kbuffer.hpp"
 #include "sorted_faces.hpp"
-#include "volume_renderer.hpp"
 
 #include <algorithm>
 
@@ -75,21 +74,32 @@ static FaceMesh lose_nearest_face(FaceMesh mesh, const OrbitCamera &camera)
     return mesh;
 }
 
-ImageRgbaF draw_volume(const Gl &gl, Method &method, const Shape &shape, const FaceMesh &mesh,
-                       const TransferFunction &transfer, const OrbitCamera &camera,
-                       glm::vec3 background)
+static std::unique_ptr<VolumeRenderer> make_renderer(const Gl &gl, const Method &method,
+                                                     const Shape &shape, const VolumeLook &look)
 {
-    const bool exact = method.name() == "depth-peeling";
-    const VolumeSettings settings{
-        .size = shape.size, .k = shape.k, .transfer = transfer, .background = background};
-    const auto renderer =
-        must(exact ? make_exact_renderer(gl, settings) : make_kbuffer_renderer(gl, settings));
-    SortedFaces faces(gl, method.take_flaw() == Flaw::none ? mesh : lose_nearest_face(mesh, camera),
+    VolumeSettings settings{
+        .size = shape.size, .k = shape.k, .transfer = look.transfer, .background = look.background};
+    if (method.name() != "depth-peeling")
+        return must(make_kbuffer_renderer(gl, settings));
+    settings.k = 64; // All fragments come in any case, in few passes with this.
+    return must(make_exact_renderer(gl, settings));
+}
+
+VolumeDrawer::VolumeDrawer(const Gl &gl, Method &method, const Shape &shape, const VolumeLook &look)
+    : gl_(gl), method_(method), size_(shape.size), camera_(look.camera),
+      renderer_(make_renderer(gl, method, shape, look))
+{
+}
+
+ImageRgbaF VolumeDrawer::draw(const FaceMesh &mesh)
+{
+    SortedFaces faces(gl_,
+                      method_.take_flaw() == Flaw::none ? mesh : lose_nearest_face(mesh, camera_),
                       ScalarRange{0.0F, 1.0F});
-    faces.sort(camera, shape.size);
-    must(renderer->draw(faces, camera));
-    const ImageRgbaF picture = read_color(gl, renderer->framebuffer(), shape.size);
-    must(check_gl(gl, "drawing a volume"));
+    faces.sort(camera_, size_);
+    must(renderer_->draw(faces, camera_));
+    const ImageRgbaF picture = read_color(gl_, renderer_->framebuffer(), size_);
+    must(check_gl(gl_, "drawing a volume"));
     return picture;
 }
 

@@ -10,7 +10,9 @@
 #include "faces.hpp"
 #include "image.hpp"
 #include "transfer_function.hpp"
+#include "volume_renderer.hpp"
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -35,9 +37,28 @@ std::vector<Level> make_levels(int count, double front, double back, float first
 /// The same extinction at all scalars, and colors from one to the other.
 TransferFunction make_uniform_transfer(float extinction, glm::vec3 at_0, glm::vec3 at_1);
 
-/// Draws in front of black, top row first; with the method's flaw, a face is lost.
-ImageRgbaF draw_volume(const Gl &gl, Method &method, const Shape &shape, const FaceMesh &mesh,
-                       const TransferFunction &transfer, const OrbitCamera &camera,
-                       glm::vec3 background = glm::vec3(0.0F));
+/// How volumes are drawn: in front of black unless there is another background.
+struct VolumeLook {
+    TransferFunction transfer;
+    OrbitCamera camera{};
+    glm::vec3 background{0.0F};
+};
+
+/// Draws by the renderer that stands for a method.
+class VolumeDrawer
+{
+public:
+    VolumeDrawer(const Gl &gl, Method &method, const Shape &shape, const VolumeLook &look);
+
+    /// Top row first. The method's flaw is that a face is lost, of the first mesh.
+    ImageRgbaF draw(const FaceMesh &mesh);
+
+private:
+    const Gl &gl_;
+    Method &method_;
+    Size size_;
+    OrbitCamera camera_;
+    std::unique_ptr<VolumeRenderer> renderer_;
+};
 
 } // namespace kb::hard
