@@ -3,6 +3,7 @@
 // Bad usage and bad input: one clear line on the standard error output, exit status 2, nothing
 // written. What the driver lacks: exit status 1.
 
+#include "image.hpp"
 #include "process.hpp"
 #include "temp_directory.hpp"
 
@@ -166,6 +167,104 @@ TEST(CommandLine, TransparencyWorksOtherwise)
     EXPECT_EQ(directory.file_count(), 1U);
 }
 
+TEST(CommandLine, IsosurfaceRefusesBadInput)
+{
+    const TempDirectory directory;
+    const std::string out = directory / "out.png";
+    const std::string empty = directory.write("empty.vtk", "");
+    const std::string points = directory.write(
+        "points.vtk", "# vtk DataFile Version 3.0\npoints\nASCII\nDATASET POLYDATA\n"
+                      "POINTS 2 float\n0 0 0 1 1 1\nPOINT_DATA 2\nSCALARS mass float 1\n"
+                      "LOOKUP_TABLE default\n0 1\n");
+    const struct {
+        std::vector<std::string> arguments;
+        std::string mention;
+    } cases[] = {
+        {{"--iso", "x"}, "--iso"},
+        {{"--iso", "0.5,nan"}, "--iso"},
+        {{"--iso", "inf"}, "--iso"},
+        {{"--iso", "0.5=red"}, "--iso"},
+        {{"--iso", "0.5,1x"}, "--iso"},
+        {{"--iso"}, "--iso"},
+        {{"--iso", "0,0.5,0.50001,1"}, "0.5 and 0.50001"},
+        {{"--levels", "0"}, "--levels"},
+        {{"--k", "0"}, "--k"},
+        {{"--k", "125"}, "--k"},
+        {{"--k", "six"}, "--k"},
+        {{"--field", "no-such-field"}, "no-such-field"},
+        {{"--grid", "/no/such/grid.vtk"}, "/no/such/grid.vtk"},
+        {{"--grid", empty}, "empty.vtk"},
+        {{"--grid", points}, "points.vtk"},
+        {{"--particles", empty}, "empty.vtk"},
+        {{"--particles", "/no/such/points.vtk"}, "/no/such/points.vtk"},
+        {{"--particles", "--field", "mass"}, "mass"},
+        {{"--particles", points, "--field", "density"}, "density"},
+        {{"--particles", "--grid", points}, "--particles"},
+        {{"--particles", "--repair"}, "--particles"},
+        {{"--particles", "--point-size", "0"}, "--point-size"},
+        {{"--particles", "--gap", "nan"}, "--gap"},
+        {{"--point-size", "0.1"}, "--particles"},
+        {{"--gap", "0.1"}, "--particles"},
+        {{"--smoothing", "-1"}, "--smoothing"},
+        {{"--smoothing", "1.5"}, "--smoothing"},
+        {{"--background", "1,1"}, "--background"},
+        {{"--background", "1,1,2"}, "--background"},
+        {{"--distance", "0.5"}, "--distance"},
+        {{"--azimuth", "nan"}, "--azimuth"},
+        {{"--count", "1"}, "--count"},
+        {{"--surfaces-out", "/no/such/place.pfm"}, "/no/such"},
+        {{"--float-out", "/no/such/place.pfm"}, "/no/such"},
+        {{"stray"}, "stray"},
+    };
+    for (const auto &c : cases) {
+        SCOPED_TRACE(testing::PrintToString(c.arguments));
+        std::vector<std::string> command{KBUFFER_ISOSURFACE, "--out", out, "--size", "16x16"};
+        command.insert(command.end(), c.arguments.begin(), c.arguments.end());
+        expect_refused(run(command, mesa_environment(patched_prefix())), "isosurface", c.mention);
+        EXPECT_EQ(directory.file_count(), 2U) << "something was written";
+    }
+}
+
+TEST(CommandLine, IsosurfaceWorksOtherwise)
+{
+    const TempDirectory directory;
+    const std::string points = directory.write(
+        "points.vtk", "# vtk DataFile Version 3.0\npoints\nASCII\nDATASET POLYDATA\n"
+                      "POINTS 4 float\n0 0 0 0 0 0.4 3 0 0.2 -3 0 0.2\nPOINT_DATA 4\n"
+                      "SCALARS mass float 1\nLOOKUP_TABLE default\n0 1 0 0\n");
+    const std::vector<std::vector<std::string>> cases{
+        {"--iso", "0.5,0.25=ff8000", "--iso", "0"},
+        {"--levels", "9", "--k", "124"},
+        {"--field", "distance", "--no-silhouettes", "--smoothing", "2"},
+        {"--particles", "--count", "1000"},
+        {"--particles", points, "--iso", "0.5", "--gap", "1", "--point-size", "0.5"},
+    };
+    for (const auto &arguments : cases) {
+        SCOPED_TRACE(testing::PrintToString(arguments));
+        const auto picture = directory / "out.png";
+        const auto surfaces = directory / "out.pfm";
+        std::vector<std::string> command{KBUFFER_ISOSURFACE, "--out",  picture, "--surfaces-out",
+                                         surfaces,           "--size", "16x16"};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        const auto result = run(command, mesa_environment(patched_prefix()));
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_EQ(result.err, "");
+        EXPECT_NE(result.out.find("1 geometry pass,"), std::string::npos) << result.out;
+        EXPECT_TRUE(kb::read_png(picture));
+        const auto image = kb::read_pfm(surfaces);
+        ASSERT_TRUE(image);
+        // The middle of the picture has a surface in all of them, whose value is one that was asked
+        // for: see those that were given.
+        const glm::vec4 &middle = image->at(8, 8);
+        EXPECT_GT(middle.x, 1.5F);
+        if (arguments[0] == "--iso") {
+            EXPECT_TRUE(middle.y == 0.5F || middle.y == 0.25F || middle.y == 0.0F) << middle.y;
+        }
+        std::filesystem::remove(picture);
+        std::filesystem::remove(surfaces);
+    }
+}
+
 TEST(CommandLine, MissingExtensionSaysWhatToDo)
 {
     const TempDirectory directory;
@@ -174,6 +273,8 @@ TEST(CommandLine, MissingExtensionSaysWhatToDo)
     expect_refused(run({KBUFFER_TRANSPARENCY, "--out", directory / "out.png"}, environment),
                    "transparency", "scripts/run", 1);
     expect_refused(run({KBUFFER_HELLO}, environment), "hello-kbuffer", "scripts/run", 1);
+    expect_refused(run({KBUFFER_ISOSURFACE, "--out", directory / "out.png"}, environment),
+                   "isosurface", "scripts/run", 1);
     environment["MESA_EXTENSION_OVERRIDE"] = "-GL_MESA_depth_peeling";
     expect_refused(
         run({KBUFFER_TRANSPARENCY, "--method", "peeling", "--out", directory / "out.png"},
@@ -187,7 +288,8 @@ TEST(CommandLine, MissingExtensionSaysWhatToDo)
 
 TEST(CommandLine, HelpIsNoError)
 {
-    for (const char *program : {KBUFFER_TRANSPARENCY, KBUFFER_PEELING, KBUFFER_PROGRAM_TOOL}) {
+    for (const char *program :
+         {KBUFFER_TRANSPARENCY, KBUFFER_PEELING, KBUFFER_ISOSURFACE, KBUFFER_PROGRAM_TOOL}) {
         const auto result = run({program, "--help"});
         EXPECT_EQ(result.status, 0);
         EXPECT_NE(result.out.find("--k"), std::string::npos);

@@ -43,11 +43,14 @@ ADD result.kbuffer[{front}].z, kbuffer[{front}].z, t.x;
 SGE inside.x, kbuffer[{front}].z, 0.5;
 )";
 
+/// No particle has left yet if the front is at 0.
 static constexpr const char *particle_segment = R"(
 TEMP back, inside;
 MOV back.xy, nearest;
 SUB t.x, nearest.x, kbuffer[{front}].x;
 SGE inside.x, program.local[1].y, t.x;
+SLT inside.y, 0.0, kbuffer[{front}].x;
+MUL inside.x, inside.x, inside.y;
 )";
 
 /// The next iso-value from the front's scalar in the direction of the back's is crossed if it is

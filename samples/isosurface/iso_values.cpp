@@ -46,7 +46,7 @@ std::vector<IsoValue> normalized(std::span<const IsoValue> values, ScalarRange r
     std::vector<IsoValue> inside;
     for (const IsoValue &iso : values) {
         if (iso.value >= range.low && iso.value <= range.high)
-            inside.push_back({normalized(iso.value, range), iso.color});
+            inside.push_back({iso.value, iso.color, normalized(iso.value, range)});
     }
     return inside;
 }
@@ -72,7 +72,7 @@ static Result<double> texel_width(std::span<const IsoValue> values, int max_texe
         return 1.0; // Any would do.
     std::size_t nearest = 1;
     const auto distance = [values](std::size_t i) {
-        return double(values[i].value) - double(values[i - 1].value);
+        return double(values[i].scalar) - double(values[i - 1].scalar);
     };
     for (std::size_t i = 2; i < values.size(); ++i) {
         if (distance(i) < distance(nearest))
@@ -80,7 +80,7 @@ static Result<double> texel_width(std::span<const IsoValue> values, int max_texe
     }
     // A texel and half of one at either end are two widths: less than three hold one value at most.
     const double width = distance(nearest) / 3.0;
-    const double extent = double(values.back().value) - double(values.front().value);
+    const double extent = double(values.back().scalar) - double(values.front().scalar);
     if (!(extent / width + 3.0 <= max_texels) || !std::isnormal(static_cast<float>(width)))
         return Error{fmt::format("the iso-values {} and {} are nearer to each other than {:.2g} of "
                                  "the extent of all",
@@ -93,11 +93,11 @@ Result<IsoTable> make_iso_table(std::span<const IsoValue> values, int max_texels
 {
     std::vector<IsoValue> sorted(values.begin(), values.end());
     for (const IsoValue &iso : sorted) {
-        if (!std::isfinite(iso.value))
+        if (!std::isfinite(iso.scalar))
             return Error{fmt::format("the iso-value {} is not finite", iso.value)};
     }
-    const auto less = [](const IsoValue &a, const IsoValue &b) { return a.value < b.value; };
-    const auto same = [](const IsoValue &a, const IsoValue &b) { return a.value == b.value; };
+    const auto less = [](const IsoValue &a, const IsoValue &b) { return a.scalar < b.scalar; };
+    const auto same = [](const IsoValue &a, const IsoValue &b) { return a.scalar == b.scalar; };
     std::stable_sort(sorted.begin(), sorted.end(), less);
     sorted.erase(std::unique(sorted.begin(), sorted.end(), same), sorted.end());
 
@@ -105,8 +105,8 @@ Result<IsoTable> make_iso_table(std::span<const IsoValue> values, int max_texels
     if (!width)
         return width.error();
     // The first value is in the middle of texel 1, the last one has a texel behind it.
-    const double first = sorted.empty() ? 0.0 : double(sorted.front().value);
-    const double extent = sorted.empty() ? 0.0 : double(sorted.back().value) - first;
+    const double first = sorted.empty() ? 0.0 : double(sorted.front().scalar);
+    const double extent = sorted.empty() ? 0.0 : double(sorted.back().scalar) - first;
     const auto texels = static_cast<std::size_t>(std::floor(extent / *width + 0.5)) + 3;
 
     IsoTable table;
@@ -116,7 +116,7 @@ Result<IsoTable> make_iso_table(std::span<const IsoValue> values, int max_texels
     const auto value_at = [&sorted](std::ptrdiff_t i) {
         if (i < 0)
             return -IsoTable::no_value;
-        return i < std::ssize(sorted) ? sorted[std::size_t(i)].value : IsoTable::no_value;
+        return i < std::ssize(sorted) ? sorted[std::size_t(i)].scalar : IsoTable::no_value;
     };
     std::ptrdiff_t inside = 0; // The first one that is not below what the texel knows.
     for (std::size_t i = 0; i < texels; ++i) {

@@ -20,8 +20,9 @@ namespace kb
 {
 
 struct IsoValue {
-    float value = 0.0F;
+    float value = 0.0F; ///< In the units of the field.
     glm::vec3 color{0.0F};
+    float scalar = 0.0F; ///< The value as the scalars of fragments are: see normalized.
 };
 
 /// "0.25", "0.25,0.5" or "0.25=ff8000": values, each with a color or without. A value without one
@@ -33,9 +34,10 @@ struct IsoRequest {
 };
 Result<IsoRequest> parse_iso_value(const std::string &text);
 
-/// (value - low) / (high - low), as the fragments' scalars are. Values out of the range have no
-/// surface and are left out.
+/// From 0 to 1 over the range: (value - low) / (high - low).
 float normalized(float value, ScalarRange range);
+
+/// The iso-values with their scalars. Those out of the range have no surface and are left out.
 std::vector<IsoValue> normalized(std::span<const IsoValue> values, ScalarRange range);
 
 /// From blue for 0 over green to red for 1: clear colors of about the same lightness.
@@ -60,9 +62,9 @@ struct IsoTable {
     float offset = 0.0F;
 };
 
-/// The values need not be sorted; of equal ones the first counts; there may be none. An error if
-/// one is no finite number, or if two are so near to each other that a table with a place for each
-/// has more than max_texels.
+/// A table of the iso-values' scalars, which need not be sorted; of equal ones the first counts;
+/// there may be none. An error if one is no finite number, or if two are so near to each other that
+/// a table with a place for each has more than max_texels.
 Result<IsoTable> make_iso_table(std::span<const IsoValue> values, int max_texels);
 
 } // namespace kb

@@ -25,7 +25,8 @@ class IsosurfaceRenderer
 public:
     static Result<IsosurfaceRenderer> make(const Gl &gl, const IsosurfaceSettings &settings);
 
-    /// Replaces the iso-values. Nothing but a texture and four numbers change.
+    /// Replaces the iso-values, which are normalized. Nothing but a texture and four numbers
+    /// change.
     Status set_iso_values(std::span<const IsoValue> values);
 
     /// Finds the surfaces of a stream that is sorted for this camera.
@@ -36,7 +37,8 @@ public:
 
     GLuint framebuffer() const { return framebuffer_.id(); }
 
-    /// x = distance from the eye along the ray, y = iso-value; both 0 where there is no surface.
+    /// x = distance from the eye along the ray, y = the scalar of its iso-value; both 0 where there
+    /// is no surface.
     ImageRgbaF read_surfaces() const;
 
     int bytes_per_pixel() const;

@@ -42,6 +42,7 @@ kb::IsosurfaceSettings settings_for(const kb::IsosurfaceOptions &options, const 
     settings.medium = source.medium;
     settings.shading.size = options.size;
     settings.shading.silhouettes = options.silhouettes;
+    settings.shading.background = options.background;
     settings.shading.smoothing = options.smoothing.value_or(0);
     if (source.medium == kb::Medium::particles) {
         const float side = point_size(options, source);
@@ -58,17 +59,17 @@ kb::IsosurfaceSettings settings_for(const kb::IsosurfaceOptions &options, const 
 }
 
 /// Distance and iso-value, in the field's units, of each pixel's surface.
-kb::ImageRgbaF surfaces_image(const kb::IsosurfaceRenderer &renderer, kb::ScalarRange range,
+kb::ImageRgbaF surfaces_image(const kb::IsosurfaceRenderer &renderer,
                               std::span<const kb::IsoValue> values)
 {
     kb::ImageRgbaF image = renderer.read_surfaces();
     for (glm::vec4 &pixel : image.pixels) {
         if (pixel.x == 0.0F)
             continue;
-        const auto same = [&](const kb::IsoValue &iso) {
-            return kb::normalized(iso.value, range) == pixel.y;
-        };
-        pixel.y = std::find_if(values.begin(), values.end(), same)->value;
+        const auto iso =
+            std::find_if(values.begin(), values.end(),
+                         [scalar = pixel.y](const kb::IsoValue &v) { return v.scalar == scalar; });
+        pixel.y = iso->value;
     }
     return image;
 }
@@ -92,8 +93,9 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
     auto renderer = kb::IsosurfaceRenderer::make(gl, settings_for(options, source));
     if (!renderer)
         return lacking(renderer.error());
-    const auto values = kb::choose_iso_values(options, source.range);
-    if (auto set = renderer->set_iso_values(kb::normalized(values, source.range)); !set)
+    const auto chosen = kb::choose_iso_values(options, source.range);
+    const auto values = kb::normalized(chosen, source.range);
+    if (auto set = renderer->set_iso_values(values); !set)
         return bad_input(set.error());
 
     const auto draw = [&] {
@@ -111,7 +113,7 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
     if (auto written = kb::write_outputs(options.outputs, picture, {}); !written)
         return bad_input(written.error());
     if (!options.surfaces.empty()) {
-        const auto image = surfaces_image(*renderer, source.range, values);
+        const auto image = surfaces_image(*renderer, values);
         if (auto written = kb::write_pfm(options.surfaces, image); !written)
             return bad_input(written.error());
     }
@@ -120,8 +122,8 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
     fmt::print("isosurface k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), 1 geometry "
                "pass, {} {}, {} iso-value{}, {} bytes per pixel\n",
                options.k, options.size.width, options.size.height, spread.median, spread.p5,
-               spread.p95, times.size(), (*stream)->count(), (*stream)->primitive(), values.size(),
-               values.size() == 1 ? "" : "s", renderer->bytes_per_pixel());
+               spread.p95, times.size(), (*stream)->count(), (*stream)->primitive(), chosen.size(),
+               chosen.size() == 1 ? "" : "s", renderer->bytes_per_pixel());
 
     while ((*context)->present(renderer->framebuffer(), options.size, options.camera))
         draw();

@@ -71,14 +71,34 @@ static void declare_surfaces(CLI::App &app, IsosurfaceOptions &options)
     app.add_flag("!--no-silhouettes", options.silhouettes, "Draw no lines where the depth jumps");
 }
 
-void declare_options(CLI::App &app, IsosurfaceOptions &options)
+static void declare_view(CLI::App &app, IsosurfaceOptions &options)
 {
-    declare_source(app, options);
-    declare_surfaces(app, options);
     add_number(app, "--azimuth", options.camera.azimuth, -360.0, 360.0, "DEG",
                "Degrees about the vertical axis");
     add_number(app, "--elevation", options.camera.elevation, -90.0, 90.0, "DEG",
                "Degrees from above");
+    add_number(app, "--distance", options.camera.distance, 1.02, 20.0, "LENGTH",
+               "Of the eye from the middle of the scene, which has radius 1");
+    add_number(app, "--field-of-view", options.camera.field_of_view, 1.0, 120.0, "DEG",
+               "Of the shorter side of the picture");
+    app.add_option_function<std::vector<float>>(
+           "--background",
+           [&options](const std::vector<float> &c) {
+               options.background = {c[0], c[1], c[2]};
+           },
+           "Red, green and blue from 0 to 1")
+        ->expected(3)
+        ->delimiter(',')
+        ->check([](const std::string &text) { return check_number(text, 0.0, 1.0); })
+        ->type_name("R,G,B")
+        ->default_str("1,1,1");
+}
+
+void declare_options(CLI::App &app, IsosurfaceOptions &options)
+{
+    declare_source(app, options);
+    declare_surfaces(app, options);
+    declare_view(app, options);
     add_context_option(app, options.context);
     add_size_option(app, options.size);
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")

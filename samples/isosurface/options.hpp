@@ -30,6 +30,7 @@ struct IsosurfaceOptions {
     std::optional<float> gap;
     std::optional<int> smoothing;
     bool silhouettes = true;
+    glm::vec3 background{1.0F};
     OrbitCamera camera;
     Size size;
     int repeat = 1;

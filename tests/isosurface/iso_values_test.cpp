@@ -18,7 +18,7 @@ std::vector<IsoValue> iso_values(const std::vector<float> &values)
 {
     std::vector<IsoValue> isos;
     for (const float value : values)
-        isos.push_back({value, glm::vec3(value)});
+        isos.push_back({value, glm::vec3(value), value});
     return isos;
 }
 
@@ -133,9 +133,10 @@ TEST(IsoValues, OutOfTheRangeAreLeftOut)
 {
     const auto inside = normalized(iso_values({-1.0F, 2.0F, 3.0F, 4.0F, 4.5F}), {2.0F, 4.0F});
     ASSERT_EQ(inside.size(), 3U);
-    EXPECT_EQ(inside[0].value, 0.0F);
-    EXPECT_EQ(inside[1].value, 0.5F);
-    EXPECT_EQ(inside[2].value, 1.0F);
+    EXPECT_EQ(inside[0].scalar, 0.0F);
+    EXPECT_EQ(inside[0].value, 2.0F);
+    EXPECT_EQ(inside[1].scalar, 0.5F);
+    EXPECT_EQ(inside[2].scalar, 1.0F);
 }
 
 } // namespace

@@ -51,7 +51,7 @@ protected:
         }
         std::vector<IsoValue> isos;
         for (const float value : values)
-            isos.push_back({value, glm::vec3(1.0F)});
+            isos.push_back({value, glm::vec3(1.0F), 0.0F});
         EXPECT_TRUE(renderer->set_iso_values(normalized(isos, range)));
         (*stream)->sort(camera_, size);
         renderer->capture(**stream, camera_);
