@@ -2,10 +2,10 @@
 """Draws the volume of a scene that the sample `volume` wrote (--json) by one of VTK's mappers, and
 times it. Needs an X server; draws on whatever OpenGL driver answers there.
 
-VTK means the same by its opacity: all its mappers for unstructured grids take opacity / unit distance
-as the extinction per unit length. Opacity here is the extinction divided by its largest value, since
-the projected tetrahedra keep it in eight bits, and the unit distance is the inverse of that value.
-scripts/tests/vtk_volume_check.py proves it on one cell."""
+VTK means the same by its opacity: all its mappers for unstructured grids take opacity / unit
+distance as the extinction per unit length. Opacity here is the extinction divided by its largest
+value, since the projected tetrahedra keep it in eight bits, and the unit distance is the inverse of
+that value. scripts/tests/vtk_volume_check.py proves it on one cell."""
 
 import argparse
 import json

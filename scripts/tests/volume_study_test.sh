@@ -21,8 +21,9 @@ test_vtk_draws_the_same_volume() {
 write_study() {
     /usr/bin/python3 - "$project/volume.json" "${1:-}" <<'PYTHON'
 import json, sys
-rows = [{"scene": scene, "method": method, "driver": driver, "k": k, "passes": 1, "what": "what <it> is",
-         "triangles": 12, "sort_ms": 3.25 if k else None, "runs_on": "llvmpipe & Co", "frames": 9,
+rows = [{"scene": scene, "method": method, "form": "cells" if k else "", "driver": driver, "k": k,
+         "passes": 1, "triangles": 12, "what": "what <it> is", "frames": 9,
+         "sort_ms": 3.25 if k else None, "runs_on": "llvmpipe & Co",
          "ms_median": ms, "ms_p5": ms - 1, "ms_p95": ms + 1, "err_max": 0.25, "err_rmse": rmse,
          "err_share": 0.125}
         for scene in ("fin, haze", "a <b>")
@@ -33,8 +34,8 @@ document = {"machine": {"processor": "Test & Co"}, "results": rows,
             "scenes": {name: {"field": "Density", "triangles": 1234567, "transfer": [],
                               "camera": {"azimuth": 20, "elevation": 30, "distance": 2.7}}
                        for name in ("fin, haze", "a <b>")},
-            "accuracy": [{"scene": "a <b>", "k": 6, "budget": 1.5, "triangles": 7654321,
-                          "displacement": 17, "share_wrong": 0.0625, "sort_ms": 2, "ms_median": 44,
+            "accuracy": [{"scene": "a <b>", "k": 6, "order": "nearest", "budget": 1.5,
+                          "triangles": 7654321, "displacement": 17, "share_wrong": 0.0625, "sort_ms": 2, "ms_median": 44,
                           "ms_p5": 43, "ms_p95": 45, "frames": 3, "err_max": 0.1, "err_rmse": 0.01,
                           "err_share": 0}]}
 exec(sys.argv[2])
@@ -49,7 +50,7 @@ test_volume_page_shows_every_row() {
     write_study
     run 0 "${volume_page[@]}"
     # 120 ms against 40 ms; an error of 0.008 against 0.001; errors in steps of 1/255
-    for text in "fin, haze" "a &lt;b&gt;" "kbuffer-program, k = 6" "<td>3.00</td><td>8.00</td>" \
+    for text in "fin, haze" "a &lt;b&gt;" "kbuffer-program, cells, k = 6" "<td>3.00</td><td>8.00</td>" \
         "<td>63.75</td><td>12.50 %</td>" "<td>7,654,321</td><td>17</td><td>6.25 %</td>" \
         "1,234,567 faces" "llvmpipe &amp; Co" "what &lt;it&gt; is" "Test &amp; Co"; do
         grep -qF "$text" "$project/volume.html" || {

@@ -32,6 +32,9 @@ half a pixel for that. Image sample distances are 1: a ray a pixel.</li>
 from a table that ends at 1/45 of the longest edge: thinner cells are not there. That is the error
 that its pictures show.</li>
 <li><b>vtk-zsweep</b> is drawn once.</li>
+<li><b>centroid</b>, <b>nearest</b>, <b>cells</b>: faces are drawn in the order of their centroids,
+of their nearest vertices, or of the cells between them, which takes longer to find and needs the
+smallest k.</li>
 </ul>
 """
 
@@ -54,7 +57,8 @@ def _percent(value):
 
 
 def _name(row):
-    return f"{row['method']}, k = {row['k']}" if row["k"] else row["method"]
+    k = f"k = {row['k']}" if row["k"] else ""
+    return ", ".join(filter(None, (row["method"], row["form"], k)))
 
 
 def _fastest_rival(rows):
@@ -85,10 +89,10 @@ def _comparison(rows):
 def _accuracy(rows):
     if not rows:
         return ""
-    head = [("k", ""), ("budget", ""), ("triangles", ""), ("displacement", ""),
+    head = [("order", "text"), ("k", ""), ("budget", ""), ("triangles", ""), ("displacement", ""),
             ("pixels out of order", ""), ("RMS error", ""), ("largest error", ""), ("ms", ""),
             ("of it sorting", "")]
-    lines = [("", [str(row["k"]), f"{row['budget']:g}×", f"{row['triangles']:,}",
+    lines = [("", [row["order"], str(row["k"]), f"{row['budget']:g}×", f"{row['triangles']:,}",
                    str(row["displacement"]), _percent(row["share_wrong"]), _steps(row["err_rmse"]),
                    _steps(row["err_max"]), _number(row["ms_median"]), _number(row["sort_ms"])])
              for row in rows]
@@ -102,8 +106,8 @@ def _pictures(folder, scene, rows):
     """The integrator's picture and the errors of the others, as parts of the page."""
     text = ""
     shown = [("integrator", "the integrator's picture")]
-    shown += [(f"{_name(row).replace(', k =', '')} error", f"{_name(row)}: its error, times 20")
-              for row in rows]
+    shown += [(f"{_name(row).replace(', k =', '').replace(',', '')} error",
+               f"{_name(row)}: its error, times 20") for row in rows]
     for name, caption in shown:
         path = os.path.join(folder, f"{scene} {name}.png")
         if os.path.exists(path):
