@@ -30,7 +30,7 @@ uniform vec4 window_to_ray; // Scale and offset of x and y, to the plane at dist
 float ray_distance()
 {
     vec2 ray = gl_FragCoord.xy * window_to_ray.xy + window_to_ray.zw;
-    return sqrt(1.0 + dot(ray, ray)) / gl_FragCoord.w;
+    return sqrt(1.0 + dot(ray, ray)) * (1.0 / gl_FragCoord.w);
 }
 )";
 

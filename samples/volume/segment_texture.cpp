@@ -20,9 +20,9 @@ static Texture make_texture(const Gl &gl, const PreintegratedTable &table,
     return texture;
 }
 
-SegmentTextures::SegmentTextures(const Gl &gl, const PreintegratedTable &table, GLint fading_filter)
-    : thin_(make_texture(gl, table, table.thin(), GL_LINEAR)),
-      fading_(make_texture(gl, table, table.fading(), fading_filter))
+SegmentTextures::SegmentTextures(const Gl &gl, const PreintegratedTable &table, GLint filter)
+    : thin_(make_texture(gl, table, table.thin(), filter)),
+      fading_(make_texture(gl, table, table.fading(), filter))
 {
 }
 

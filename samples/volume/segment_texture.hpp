@@ -12,9 +12,8 @@ namespace kb
 class SegmentTextures
 {
 public:
-    /// Linear filtering, of `fading` that which is given: GL_NEAREST costs half of the time, and
-    /// its error counts little where segments are thin.
-    SegmentTextures(const Gl &gl, const PreintegratedTable &table, GLint fading_filter);
+    /// GL_LINEAR filtering, or GL_NEAREST: a lookup is then a third of the work.
+    SegmentTextures(const Gl &gl, const PreintegratedTable &table, GLint filter);
 
     /// Binds `thin` to a texture unit and `fading` to the next.
     void bind(int unit) const;

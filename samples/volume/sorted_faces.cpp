@@ -25,12 +25,63 @@ constexpr std::int32_t subpixels = 1 << subpixel_bits;
 /// round it to, and one for other rounding on the way.
 constexpr std::int32_t slack = 2;
 
-/// Whether there is the center of one of `count` pixels between two positions.
-bool covers_center(std::int32_t low, std::int32_t high, std::int32_t count)
+/// Triangles of at most this many pixels in width and height are looked at more closely.
+constexpr std::int32_t few = 4;
+
+/// Pixels with a center between two positions, and how many there are at most.
+struct Pixels {
+    Pixels(std::int32_t low, std::int32_t high, std::int32_t count)
+        : first(std::max((low - slack + subpixels - 1) >> subpixel_bits, 0)),
+          last(std::min((high + slack) >> subpixel_bits, count - 1))
+    {
+    }
+
+    std::int32_t count() const { return last - first + 1; }
+
+    std::int32_t first;
+    std::int32_t last;
+};
+
+struct Point {
+    std::int32_t x;
+    std::int32_t y;
+};
+
+/// Twice the area of the triangle abc.
+std::int32_t cross(Point a, Point b, Point c)
 {
-    const std::int32_t first = (low - slack + subpixels - 1) >> subpixel_bits;
-    const std::int32_t last = (high + slack) >> subpixel_bits;
-    return std::max(first, 0) <= std::min(last, count - 1);
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// How much cross changes at most when its points are slack off.
+std::int32_t cross_slack(Point a, Point b, Point c)
+{
+    const std::int32_t extent =
+        std::abs(b.x - a.x) + std::abs(b.y - a.y) + std::abs(c.x - a.x) + std::abs(c.y - a.y);
+    return 2 * slack * extent + 8 * slack * slack;
+}
+
+/// Whether the point is on the other side of ab than c, for sure. `side` is the sign of abc.
+bool is_beyond(Point a, Point b, Point p, std::int32_t side)
+{
+    return side * cross(a, b, p) < -cross_slack(a, b, p);
+}
+
+/// Whether a triangle may cover one of a few pixels about it.
+bool may_cover(Point a, Point b, Point c, const Pixels &columns, const Pixels &rows)
+{
+    const std::int32_t area = cross(a, b, c);
+    if (std::abs(area) <= cross_slack(a, b, c))
+        return true; // It may be the other way round.
+    const std::int32_t side = area > 0 ? 1 : -1;
+    for (std::int32_t row = rows.first; row <= rows.last; ++row) {
+        for (std::int32_t column = columns.first; column <= columns.last; ++column) {
+            const Point p{column * subpixels, row * subpixels};
+            if (!is_beyond(a, b, p, side) && !is_beyond(b, c, p, side) && !is_beyond(c, a, p, side))
+                return true;
+        }
+    }
+    return false;
 }
 
 std::int32_t to_subpixels(float position)
@@ -119,8 +170,12 @@ Seen SortedFaces::see(const glm::uvec3 &triangle, glm::vec3 eye, Size size) cons
     if (!(std::min({a.depth, b.depth, c.depth}) > 0.0F))
         return see_near_eye(vertices_[triangle.x], vertices_[triangle.y], vertices_[triangle.z],
                             eye);
-    if (!(covers_center(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), size.width) &&
-          covers_center(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), size.height)))
+    const Pixels columns(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), size.width);
+    const Pixels rows(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), size.height);
+    if (columns.count() <= 0 || rows.count() <= 0)
+        return Seen::never;
+    if (columns.count() <= few && rows.count() <= few &&
+        !may_cover({a.x, a.y}, {b.x, b.y}, {c.x, c.y}, columns, rows))
         return Seen::never;
     const std::int64_t area = std::int64_t(b.x - a.x) * std::int64_t(c.y - a.y) -
                               std::int64_t(c.x - a.x) * std::int64_t(b.y - a.y);
