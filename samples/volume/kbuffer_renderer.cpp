@@ -34,7 +34,39 @@ void main()
 }
 )";
 
-/// Takes the nearest of those that are left, k times.
+/// Takes the nearest of those that are left, k times. Loops over arrays are slow: few fragments do
+/// without.
+std::string sort_and_add(int k)
+{
+    constexpr int few = 16;
+    std::string text;
+    for (int i = 0; i < k && k <= few; ++i) {
+        for (int j = i + 1; j < k; ++j)
+            text += fmt::format("        order(waiting[{}], waiting[{}]);\n", i, j);
+        text += fmt::format("        add(waiting[{}]);\n", i);
+    }
+    if (k > few)
+        text = fmt::format("        for (int i = 0; i < {0}; ++i) {{\n"
+                           "            for (int j = i + 1; j < {0}; ++j)\n"
+                           "                order(waiting[i], waiting[j]);\n"
+                           "            add(waiting[i]);\n"
+                           "        }}\n",
+                           k);
+    return text;
+}
+
+constexpr const char *order_function = R"(
+void order(inout vec2 a, inout vec2 b)
+{
+    bool swap = b.x < a.x;
+    vec2 nearer = swap ? b : a;
+    b = swap ? a : b;
+    a = nearer;
+}
+
+)";
+
+/// Composites what still waits.
 std::string make_flush_shader(const KBuffer &kbuffer, int k)
 {
     const auto fetch = [&kbuffer](int entry) {
@@ -47,6 +79,7 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k)
     text += "uniform vec3 background;\n"
             "layout(location = 0) out vec4 result;\n";
     text += make_volume_shader(table_size);
+    text += order_function;
     text += "void main()\n{\n"
             "    ivec2 pixel = ivec2(gl_FragCoord.xy);\n";
     text += fmt::format("    start({}, {});\n    vec2 waiting[{}];\n", fetch(0), fetch(1),
@@ -55,26 +88,13 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k)
     for (int i = 0; i < waiting_entries(k); ++i)
         text += fmt::format("    pair = {}; waiting[{}] = pair.xy; waiting[{}] = pair.zw;\n",
                             fetch(volume_entries(0) + i), 2 * i, 2 * i + 1);
-    text += fmt::format(R"(
-    bool any = front.x > 0.0;
-    for (int i = 0; i < {0}; ++i)
-        any = any || waiting[i].x > 0.0;
-    if (any) {{
-        for (int i = 0; i < {0}; ++i) {{
-            vec2 nearest = waiting[i];
-            for (int j = i + 1; j < {0}; ++j) {{
-                bool swap = waiting[j].x < nearest.x;
-                vec2 other = waiting[j];
-                waiting[j] = swap ? nearest : other;
-                nearest = swap ? other : nearest;
-            }}
-            add(nearest);
-        }}
-    }}
-    result = vec4(color.rgb + (1.0 - color.a) * background, color.a);
-}}
-)",
-                        k);
+    text += "    bool any = front.x > 0.0;\n";
+    for (int i = 0; i < k; ++i)
+        text += fmt::format("    any = any || waiting[{}].x > 0.0;\n", i);
+    text += "    if (any) {\n" + sort_and_add(k) +
+            "    }\n"
+            "    result = vec4(color.rgb + (1.0 - color.a) * background, color.a);\n"
+            "}\n";
     return text;
 }
 
