@@ -35,30 +35,34 @@ void main()
 )";
 
 /// Takes the nearest of those that are left, k times. Loops over arrays are slow: few fragments do
-/// without.
+/// without, and not at all where nothing has been drawn. (A branch about loops that index arrays is
+/// more than softpipe can do.)
 std::string sort_and_add(int k)
 {
     constexpr int few = 16;
-    std::string text;
+    std::string text = "    if (front.x > 0.0";
+    for (int i = 0; i < k; ++i)
+        text += fmt::format(" || waiting[{}].x > 0.0", i);
+    text += ") {\n";
     for (int i = 0; i < k && k <= few; ++i) {
         for (int j = i + 1; j < k; ++j)
             text += fmt::format("        order(waiting[{}], waiting[{}]);\n", i, j);
         text += fmt::format("        add(waiting[{}]);\n", i);
     }
-    if (k > few)
-        text = fmt::format("        for (int i = 0; i < {0}; ++i) {{\n"
-                           "            for (int j = i + 1; j < {0}; ++j)\n"
-                           "                order(waiting[i], waiting[j]);\n"
-                           "            add(waiting[i]);\n"
-                           "        }}\n",
-                           k);
-    return text;
+    if (k <= few)
+        return text + "    }\n";
+    return fmt::format("    for (int i = 0; i < {0}; ++i) {{\n"
+                       "        for (int j = i + 1; j < {0}; ++j)\n"
+                       "            order(waiting[i], waiting[j]);\n"
+                       "        add(waiting[i]);\n"
+                       "    }}\n",
+                       k);
 }
 
 constexpr const char *order_function = R"(
 void order(inout vec2 a, inout vec2 b)
 {
-    bool swap = b.x < a.x;
+    bool swap = b.x <= a.x; // Of equal ones those at the end have come first.
     vec2 nearer = swap ? b : a;
     b = swap ? a : b;
     a = nearer;
@@ -88,12 +92,8 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k)
     for (int i = 0; i < waiting_entries(k); ++i)
         text += fmt::format("    pair = {}; waiting[{}] = pair.xy; waiting[{}] = pair.zw;\n",
                             fetch(volume_entries(0) + i), 2 * i, 2 * i + 1);
-    text += "    bool any = front.x > 0.0;\n";
-    for (int i = 0; i < k; ++i)
-        text += fmt::format("    any = any || waiting[{}].x > 0.0;\n", i);
-    text += "    if (any) {\n" + sort_and_add(k) +
-            "    }\n"
-            "    result = vec4(color.rgb + (1.0 - color.a) * background, color.a);\n"
+    text += sort_and_add(k);
+    text += "    result = vec4(color.rgb + (1.0 - color.a) * background, color.a);\n"
             "}\n";
     return text;
 }

@@ -13,38 +13,46 @@
 namespace kb
 {
 
+double fade(double depth)
+{
+    const auto polynomial = [depth](const std::array<double, 4> &c) {
+        return depth * (c[0] + depth * (c[1] + depth * (c[2] + depth * c[3])));
+    };
+    return polynomial(fade_numerator) / (1.0 + polynomial(fade_denominator));
+}
+
 namespace
 {
 
-/// A part of a segment that is short enough for its color to come from its middle.
+/// A part of a segment along which extinction and color are nearly linear.
 struct Step {
-    double share;     ///< Of the segment's length.
-    double depth;     ///< Optical depth of the part, for a segment of length 1.
-    glm::dvec3 color; ///< Mean color, weighted by extinction.
+    double share;        ///< Of the segment's length.
+    double depth;        ///< Optical depth of the part, for a segment of length 1.
+    glm::dvec3 color;    ///< Mean color, weighted by extinction.
+    glm::dvec3 gradient; ///< Half of the color at its front end less that at its back end.
 };
 
 /// Between control points extinction and color are linear, so that the optical depth of a part is
 /// that by the trapezoidal rule, and Simpson's rule gives its mean color: both exact. What a step
-/// neglects is that the extinction within it hides its far end more than its near one.
+/// neglects is that within it extinction changes while it hides the far end.
 class Steps
 {
 public:
     Steps(const TransferFunction &transfer, double front, double back) : transfer_(transfer)
     {
-        double from = front;
-        std::array<double, 2> ends{std::min(front, back), std::max(front, back)};
-        std::vector<double> inner;
+        // Of the function as it is from 0 to 1; its first and last piece go on beyond.
+        const double low = std::max(std::min(front, back), 0.0);
+        const double high = std::min(std::max(front, back), 1.0);
+        std::vector<double> ends{front};
         for (const TransferPoint &point : transfer.points()) {
-            if (point.value > ends[0] && point.value < ends[1])
-                inner.push_back(point.value);
+            if (point.value > low && point.value < high && point.value != ends.back())
+                ends.push_back(point.value);
         }
         if (back < front)
-            std::reverse(inner.begin(), inner.end());
-        for (const double value : inner) {
-            add_piece(from, value, back - front);
-            from = value;
-        }
-        add_piece(from, back, back - front);
+            std::reverse(ends.begin() + 1, ends.end());
+        ends.push_back(back);
+        for (std::size_t i = 1; i < ends.size(); ++i)
+            add_piece(ends[i - 1], ends[i], back - front);
     }
 
     SegmentOptics at(double length) const
@@ -58,7 +66,7 @@ public:
             const double seen = depth > 1e-6 ? -std::expm1(-depth) / depth : 1.0 - depth / 2.0;
             // Where there is no extinction at all, the color that a little of it would have.
             const double weight = std::exp(-passed) * seen * (step.depth + step.share * 1e-30);
-            sum += weight * step.color;
+            sum += weight * (step.color + fade(depth) * step.gradient);
             weights += weight;
             passed += depth;
         }
@@ -71,13 +79,12 @@ private:
     void add_piece(double from, double to, double extent)
     {
         const double share = extent != 0.0 ? (to - from) / extent : 1.0;
-        // The values at the ends, seen from inside of the piece: the function may step there.
-        const double middle = 0.5 * (from + to);
-        const auto ends = inner_ends(from, to, middle);
+        const auto ends = ends_of_piece(from, to);
         for (int i = 0; i < steps_a_piece; ++i) {
             const auto at = [&](double half_steps) {
-                const double part = half_steps / (2.0 * steps_a_piece);
-                return glm::mix(ends[0], ends[1], part);
+                glm::dvec4 value = glm::mix(ends[0], ends[1], half_steps / (2.0 * steps_a_piece));
+                value.w = std::max(value.w, 0.0);
+                return value;
             };
             const glm::dvec4 a = at(2.0 * i);
             const glm::dvec4 b = at(2.0 * i + 1.0);
@@ -87,29 +94,33 @@ private:
                 (glm::dvec3(a) * a.w + 4.0 * glm::dvec3(b) * b.w + glm::dvec3(c) * c.w) / 6.0;
             const double step_share = share / steps_a_piece;
             const double depth = extinction * step_share;
-            steps_.push_back(
-                {step_share, depth, extinction > 0.0 ? emission / extinction : glm::dvec3(b)});
+            steps_.push_back({step_share, depth,
+                              extinction > 0.0 ? emission / extinction : glm::dvec3(b),
+                              0.5 * (glm::dvec3(a) - glm::dvec3(c))});
             depth_ += depth;
         }
     }
 
-    /// Color and extinction at the ends of a piece, extended from its middle.
-    std::array<glm::dvec4, 2> inner_ends(double from, double to, double middle) const
+    /// Color and extinction at the ends of a piece, extended from its inside: the function may
+    /// step at its ends, and they may be beyond 0 or 1.
+    std::array<glm::dvec4, 2> ends_of_piece(double from, double to) const
     {
-        const auto sample = [this](double value) {
-            const TransferPoint point = transfer_.at(static_cast<float>(value));
-            return glm::dvec4(point.color,
-                              std::min(point.extinction, PreintegratedTable::max_extinction));
-        };
-        if (from == to)
-            return {sample(from), sample(from)};
-        const glm::dvec4 quarter = sample(0.5 * (from + middle));
-        const glm::dvec4 three_quarters = sample(0.5 * (middle + to));
-        const glm::dvec4 slope = three_quarters - quarter;
-        // Rounding must not make extinction negative.
-        const glm::dvec4 nothing(0.0);
-        return {glm::max(quarter - 0.5 * slope, nothing),
-                glm::max(three_quarters + 0.5 * slope, nothing)};
+        const double low = std::max(std::min(from, to), 0.0);
+        const double high = std::min(std::max(from, to), 1.0);
+        const double first = low + 0.25 * (high - low);
+        const double second = high - 0.25 * (high - low);
+        const glm::dvec4 value = sample(first);
+        if (!(second > first))
+            return {value, value};
+        const glm::dvec4 slope = (sample(second) - value) / (second - first);
+        return {value + slope * (from - first), value + slope * (to - first)};
+    }
+
+    glm::dvec4 sample(double value) const
+    {
+        const TransferPoint point = transfer_.at(static_cast<float>(value));
+        return glm::dvec4(point.color,
+                          std::min(point.extinction, PreintegratedTable::max_extinction));
     }
 
     const TransferFunction &transfer_;
@@ -123,14 +134,6 @@ SegmentOptics integrate_segment(const TransferFunction &transfer, float front, f
                                 float length)
 {
     return Steps(transfer, front, back).at(length);
-}
-
-double fade(double depth)
-{
-    const auto polynomial = [depth](const std::array<double, 4> &c) {
-        return depth * (c[0] + depth * (c[1] + depth * (c[2] + depth * c[3])));
-    };
-    return polynomial(fade_numerator) / (1.0 + polynomial(fade_denominator));
 }
 
 PreintegratedTable::PreintegratedTable(const TransferFunction &transfer, TableSize size)
@@ -153,7 +156,9 @@ void PreintegratedTable::fill(const TransferFunction &transfer, int first_differ
 {
     for (int j = first_difference; j < last_difference; ++j) {
         const double place = (2.0 * j / (size_.differences - 1) - 1.0) / (1.0 + half_difference);
-        const double difference = half_difference * place / (1.0 - std::abs(place));
+        double difference = half_difference * place / (1.0 - std::abs(place));
+        if (std::abs(difference) < 1e-3)
+            difference = 1e-3; // For the limit of fading.
         for (int i = 0; i < size_.means; ++i) {
             const double mean = static_cast<double>(i) / (size_.means - 1);
             const Steps steps(transfer, mean - 0.5 * difference, mean + 0.5 * difference);
@@ -162,9 +167,7 @@ void PreintegratedTable::fill(const TransferFunction &transfer, int first_differ
             if (thin.extinction > 0.0F) {
                 constexpr double depth = 2.0;
                 const SegmentOptics faded = steps.at(depth / thin.extinction);
-                const glm::vec3 thick =
-                    thin.color + (faded.color - thin.color) / static_cast<float>(fade(depth));
-                fading = glm::clamp(thick, 0.0F, 1.0F) - thin.color;
+                fading = (faded.color - thin.color) / static_cast<float>(fade(depth) * difference);
             }
             const auto texel = static_cast<std::size_t>(j) * static_cast<std::size_t>(size_.means) +
                                static_cast<std::size_t>(i);

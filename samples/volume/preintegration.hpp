@@ -54,7 +54,9 @@ public:
 
     TableSize size() const { return size_; }
 
-    /// (thin color, extinction), and (thick color - thin color, 0); means first.
+    /// (thin color, extinction), and ((thick color - thin color) / difference, 0), which is as good
+    /// as constant where colors are linear; means first. What no segment can be, as one of its ends
+    /// is beyond 0 or 1, is such that interpolation is right beside it.
     const std::vector<glm::vec4> &thin() const { return thin_; }
     const std::vector<glm::vec4> &fading() const { return fading_; }
 

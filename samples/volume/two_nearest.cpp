@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// The fragment bubbles through those that wait: from each it takes the place if it is farther, and
-// goes on as that one if not. What comes out at the end is the nearest. Equal depths need no
-// swap. With (d, v) the pair of depth and value:
+// The fragment bubbles through those that wait: unless it is nearer than one, it takes that one's
+// place, and goes on as that one. What comes out at the end is the nearest. With (d, v) the pair of
+// depth and value:
 //
-//     swapped = waiting[i].d < nearest.d;  (nearest, waiting[i]) = swapped ? (waiting[i], nearest)
-//                                                                          : (nearest, waiting[i])
+//     (nearest, waiting[i]) = nearest.d < waiting[i].d ? (nearest, waiting[i])
+//                                                      : (waiting[i], nearest)
+//
+// Of equal depths those farther on in the line have come first, and they leave first.
 
 #include "two_nearest.hpp"
 
@@ -23,18 +25,17 @@ int waiting_entries(int k)
 
 std::string make_take_nearest(int k, int first_entry)
 {
-    std::string text = "TEMP nearest, waiting, swapped;\n"
+    std::string text = "TEMP nearest, nearer;\n"
                        "MOV nearest.xy, fragment.color;\n";
     for (int i = 0; i < k; ++i) {
         const int entry = first_entry + i / 2;
         const bool second = i % 2 == 1;
         // CMP tests for less than zero.
         fmt::format_to(std::back_inserter(text),
-                       "SUB swapped.x, kbuffer[{0}].{1}, nearest.x;\n"
-                       "CMP result.kbuffer[{0}].{2}, swapped.x, nearest.{3}, kbuffer[{0}];\n"
-                       "CMP nearest.xy, swapped.x, kbuffer[{0}].{4}, nearest;\n",
-                       entry, second ? "z" : "x", second ? "zw" : "xy", second ? "xyxy" : "xyxy",
-                       second ? "zwzw" : "xyxy");
+                       "SUB nearer.x, nearest.x, kbuffer[{0}].{1};\n"
+                       "CMP result.kbuffer[{0}].{2}, nearer.x, kbuffer[{0}], nearest.xyxy;\n"
+                       "CMP nearest.xy, nearer.x, nearest, kbuffer[{0}].{3};\n",
+                       entry, second ? "z" : "x", second ? "zw" : "xy", second ? "zwzw" : "xyxy");
     }
     return text;
 }

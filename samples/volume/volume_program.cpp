@@ -95,8 +95,8 @@ std::string make_volume_program(int k, TableSize table)
                         "ABS segment.z, segment.y;\n"
                         "ADD segment.z, segment.z, {};\n"
                         "RCP segment.z, segment.z;\n"
-                        "MUL segment.y, segment.y, segment.z;\n"
-                        "MAD place.y, segment.y, {}, 0.5;\n"
+                        "MUL segment.z, segment.y, segment.z;\n"
+                        "MAD place.y, segment.z, {}, 0.5;\n"
                         "TEX optics, place, texture[0], 2D;\n"
                         "TEX fading, place, texture[1], 2D;\n"
                         "MUL depth.x, optics.w, segment.x;\n",
@@ -106,6 +106,7 @@ std::string make_volume_program(int k, TableSize table)
     text += polynomial("depth.z", "depth.x", fade_denominator, 1.0);
     text += fmt::format("RCP depth.z, depth.z;\n"
                         "MUL depth.y, depth.y, depth.z;\n"
+                        "MUL depth.y, depth.y, segment.y;\n"
                         "MAD optics.xyz, fading, depth.y, optics;\n"
                         "ADD depth.x, depth.x, kbuffer[1].w;\n"
                         "MOV result.kbuffer[1].w, depth.x;\n"
@@ -165,7 +166,7 @@ void add(vec2 fragment)
         float depth = optics.w * segment;
         float fade = polynomial(depth, fade_numerator) /
                      (1.0 + polynomial(depth, fade_denominator));
-        optics.rgb += fade * textureLod(fading, place, 0.0).rgb;
+        optics.rgb += fade * difference * textureLod(fading, place, 0.0).rgb;
         front.w += depth;
         float alpha = 1.0 - exp(-front.w);
         color = vec4(color.rgb + optics.rgb * (alpha - color.a), alpha);
