@@ -75,10 +75,11 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
             return lacking(drawn.error());
     }
 
-    kb::ImageRgbaF image = kb::read_color(gl, (*renderer)->framebuffer(), options.size);
-    for (glm::vec4 &pixel : image.pixels)
-        pixel.a = 1.0F; // The background is in it.
-    if (auto written = kb::write_outputs({options.picture, options.floats, {}}, image, {});
+    const kb::ImageRgbaF image = kb::read_color(gl, (*renderer)->framebuffer(), options.size);
+    kb::ImageRgbaF opaque = image; // The background is in it.
+    for (glm::vec4 &pixel : opaque.pixels)
+        pixel.a = 1.0F;
+    if (auto written = kb::write_outputs({options.picture, options.floats, {}}, opaque, {});
         !written)
         return Failure{written.error(), kb::exit_bad_input};
     report.faces = faces.count();
