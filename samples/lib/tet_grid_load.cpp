@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 
+#include "file.hpp"
 #include "legacy_vtk.hpp"
 #include "tet_grid.hpp"
 
@@ -7,8 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 namespace kb
@@ -87,19 +86,6 @@ static Result<PointSet> parse_point_set(std::string_view text)
     if (auto checked = check_point_set(set); !checked)
         return checked.error();
     return set;
-}
-
-static Result<std::string> read_file(const std::filesystem::path &path)
-{
-    std::error_code code;
-    if (!std::filesystem::exists(path, code))
-        return Error{"no such file"};
-    if (std::filesystem::is_directory(path, code))
-        return Error{"it is a directory"};
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        return Error{"it cannot be opened"};
-    return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
 template <class Parse>

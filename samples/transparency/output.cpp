@@ -11,7 +11,7 @@
 namespace kb
 {
 
-static Status check_place(const std::filesystem::path &file)
+Status check_writable(const std::filesystem::path &file)
 {
     if (file.empty())
         return ok;
@@ -30,7 +30,7 @@ static Status check_place(const std::filesystem::path &file)
 Status check_writable(const OutputPaths &paths)
 {
     for (const auto &file : {paths.picture, paths.floats}) {
-        if (auto checked = check_place(file); !checked)
+        if (auto checked = check_writable(file); !checked)
             return checked;
     }
     if (!paths.layers.empty()) {
@@ -39,7 +39,7 @@ Status check_writable(const OutputPaths &paths)
         if (code)
             return Error{fmt::format("cannot make the directory {}: {}", paths.layers.string(),
                                      code.message())};
-        return check_place(paths.layers / "layer-00.png");
+        return check_writable(paths.layers / "layer-00.png");
     }
     return ok;
 }

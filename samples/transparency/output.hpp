@@ -18,6 +18,9 @@ struct OutputPaths {
     bool empty() const { return picture.empty() && floats.empty() && layers.empty(); }
 };
 
+/// Finds out before any work whether a file can be written; an empty path is none.
+Status check_writable(const std::filesystem::path &file);
+
 /// Finds out before any work whether all of them can be written. Makes the directory of the layers.
 Status check_writable(const OutputPaths &paths);
 

@@ -117,8 +117,10 @@ int main(int argc, char **argv)
     kb::declare_options(app, options);
     if (const auto status = kb::parse_command_line(app, argc, argv))
         return *status;
-    if (auto writable = kb::check_writable({options.picture, options.floats, {}}); !writable)
-        return kb::fail(app, writable.error(), kb::exit_bad_input);
+    for (const auto &file : {options.picture, options.floats, options.json}) {
+        if (auto writable = kb::check_writable(file); !writable)
+            return kb::fail(app, writable.error(), kb::exit_bad_input);
+    }
 
     try {
         const auto scene = kb::make_volume_scene(options.scene);

@@ -2,13 +2,14 @@
 
 #include "transfer_function.hpp"
 
+#include "file.hpp"
+
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 
@@ -171,11 +172,10 @@ Result<TransferFunction> parse_transfer_function(std::string_view text, ScalarRa
 Result<TransferFunction> load_transfer_function(const std::filesystem::path &path,
                                                 ScalarRange range)
 {
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file)
-        return Error{fmt::format("cannot read {}", path.string())};
-    auto function = parse_transfer_function(text, range);
+    const auto text = read_file(path);
+    if (!text)
+        return Error{fmt::format("cannot read {}: {}", path.string(), text.error().message)};
+    auto function = parse_transfer_function(*text, range);
     if (!function)
         return Error{fmt::format("{}: {}", path.string(), function.error().message)};
     return function;

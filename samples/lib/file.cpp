@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+
+#include "file.hpp"
+
+#include <fstream>
+#include <vector>
+
+namespace kb
+{
+
+Result<std::string> read_file(const std::filesystem::path &path)
+{
+    std::error_code code;
+    if (!std::filesystem::exists(path, code))
+        return Error{"no such file"};
+    if (std::filesystem::is_directory(path, code))
+        return Error{"it is a directory"};
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return Error{"it cannot be opened"};
+    std::string content;
+    std::vector<char> block(1U << 20U);
+    while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0)
+        content.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    if (file.bad())
+        return Error{"it cannot be read"};
+    return content;
+}
+
+} // namespace kb
