@@ -81,7 +81,7 @@ static std::unique_ptr<VolumeRenderer> make_renderer(const Gl &gl, const Method 
         .size = shape.size, .k = shape.k, .transfer = look.transfer, .background = look.background};
     if (method.name() != "depth-peeling")
         return must(make_kbuffer_renderer(gl, settings));
-    settings.k = 64; // All fragments come in any case, in few passes with this.
+    settings.k = 256; // All fragments come in any case, in few passes with this.
     return must(make_exact_renderer(gl, settings));
 }
 
