@@ -14,8 +14,20 @@ import sys
 import tempfile
 
 import numpy as np
-import vtk
-from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkObject, vtkPoints
+from vtkmodules.vtkCommonDataModel import (
+    VTK_TETRA,
+    vtkCellArray,
+    vtkDataSet,
+    vtkDataSetAttributes,
+    vtkStructuredGrid,
+    vtkUnstructuredGrid,
+)
+from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
+from vtkmodules.vtkFiltersGeneral import vtkDataSetTriangleFilter
+from vtkmodules.vtkIOLegacy import vtkDataSetReader, vtkUnstructuredGridWriter
+from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
 
 import plot3d
 
@@ -27,7 +39,7 @@ FIVE_TETRAHEDRA = (
     np.array([[1, 0, 5, 3], [2, 3, 6, 0], [4, 5, 0, 6], [7, 6, 3, 5], [0, 3, 6, 5]]),
 )
 OWN_DATA = ("medit:", "gmsh:", "cell_tags", "point_tags")
-HIDDEN_POINT = vtk.vtkDataSetAttributes.HIDDENPOINT
+HIDDEN_POINT = vtkDataSetAttributes.HIDDENPOINT
 
 
 class BadGrid(Exception):
@@ -115,7 +127,7 @@ def point_arrays(data):
         return [a for a in found if a is not None and a.GetName() != "vtkGhostType"]
 
     if not numeric(data.GetPointData()) and numeric(data.GetCellData()):
-        average = vtk.vtkCellDataToPointData()
+        average = vtkCellDataToPointData()
         average.SetInputData(data)
         average.Update()
         data = average.GetOutput()
@@ -156,9 +168,9 @@ def split_structured_vtk(data):
 
 
 def split(data):
-    if isinstance(data, vtk.vtkStructuredGrid) and data.GetPoints():
+    if isinstance(data, vtkStructuredGrid) and data.GetPoints():
         return split_structured_vtk(data)
-    triangulate = vtk.vtkDataSetTriangleFilter()
+    triangulate = vtkDataSetTriangleFilter()
     triangulate.TetrahedraOnlyOn()
     arrays = point_arrays(data)
     triangulate.SetInputData(data)
@@ -194,7 +206,7 @@ def read_plot3d(path, solution, block):
 def read_vtk(path):
     with open(path, "rb") as file:
         is_legacy = file.read(5) == b"# vtk"
-    reader = vtk.vtkDataSetReader() if is_legacy else vtk.vtkXMLGenericDataObjectReader()
+    reader = vtkDataSetReader() if is_legacy else vtkXMLGenericDataObjectReader()
     if is_legacy:
         reader.ReadAllScalarsOn()
         reader.ReadAllVectorsOn()
@@ -202,7 +214,7 @@ def read_vtk(path):
     reader.SetFileName(path)
     reader.Update()
     data = reader.GetOutput()
-    if not isinstance(data, vtk.vtkDataSet) or not data.GetNumberOfPoints():
+    if not isinstance(data, vtkDataSet) or not data.GetNumberOfPoints():
         raise BadGrid("VTK finds no grid in it")
     return data
 
@@ -230,14 +242,14 @@ def read_by_meshio(path):
 
 def write(grid, path):
     """A whole file or none."""
-    data = vtk.vtkUnstructuredGrid()
-    points = vtk.vtkPoints()
+    data = vtkUnstructuredGrid()
+    points = vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(grid.points), deep=True))
     data.SetPoints(points)
-    cells = vtk.vtkCellArray()
+    cells = vtkCellArray()
     sized = np.column_stack([np.full(len(grid.cells), 4), grid.cells])
     cells.SetCells(len(grid.cells), numpy_to_vtkIdTypeArray(sized.ravel(), deep=True))
-    data.SetCells(vtk.VTK_TETRA, cells)
+    data.SetCells(VTK_TETRA, cells)
     for name, values in grid.arrays.items():
         array = numpy_to_vtk(np.ascontiguousarray(values, dtype=np.float32), deep=True)
         array.SetName(name)
@@ -245,7 +257,7 @@ def write(grid, path):
     folder = os.path.dirname(os.path.abspath(path))
     with tempfile.TemporaryDirectory(dir=folder) as temporary:
         made = os.path.join(temporary, "grid.vtk")
-        writer = vtk.vtkUnstructuredGridWriter()
+        writer = vtkUnstructuredGridWriter()
         writer.SetFileTypeToBinary()
         writer.SetHeader("tetrahedral grid")
         writer.SetFileName(made)
@@ -290,7 +302,7 @@ def main():
     parser.add_argument("--solution")
     parser.add_argument("--block", type=int)
     options = parser.parse_args()
-    vtk.vtkObject.GlobalWarningDisplayOff()
+    vtkObject.GlobalWarningDisplayOff()
     np.seterr(all="ignore")  # Grid.check finds what comes of it.
     try:
         for path in filter(None, (options.input, options.solution)):

@@ -4,17 +4,19 @@
 and the measure of what was made of them.
 
 Usage: grids.py make FOLDER
-       grids.py measure FILE
+       grids.py measure FILE...
 """
 
 import itertools
 import os
 import sys
 
-import meshio
 import numpy as np
-import vtk
-from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkStructuredGrid
+from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader
+from vtkmodules.vtkIOXML import vtkXMLStructuredGridWriter
 
 POINTS = 5  # along each edge
 
@@ -48,9 +50,9 @@ def tetrahedra():
 
 
 def structured(points, shape):
-    grid = vtk.vtkStructuredGrid()
+    grid = vtkStructuredGrid()
     grid.SetDimensions(*shape)
-    coordinates = vtk.vtkPoints()
+    coordinates = vtkPoints()
     coordinates.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
     grid.SetPoints(coordinates)
     values = numpy_to_vtk(field(points).astype(np.float32), deep=True)
@@ -94,11 +96,13 @@ def folded_points(shape):
 
 
 def make(folder):
+    import meshio  # Here, as it takes long to load.
+
     os.chdir(folder)
     points = cube_points()
     shape = (POINTS,) * 3
 
-    writer = vtk.vtkXMLStructuredGridWriter()
+    writer = vtkXMLStructuredGridWriter()
     writer.SetFileName("structured.vts")
     writer.SetInputData(structured(points, shape))
     writer.Write()
@@ -136,13 +140,13 @@ def make(folder):
 def measure(path):
     """Tetrahedra, their volume, the smallest of them, faces inside the cube that two do not share,
     and the largest error of the field."""
-    reader = vtk.vtkUnstructuredGridReader()
+    reader = vtkUnstructuredGridReader()
     reader.ReadAllFieldsOn()
     reader.SetFileName(path)
     reader.Update()
     grid = reader.GetOutput()
     points = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
-    assert set(vtk_to_numpy(grid.GetCellTypesArray())) == {vtk.VTK_TETRA}
+    assert set(vtk_to_numpy(grid.GetCellTypesArray())) == {VTK_TETRA}
     cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
     a, b, c, d = points[cells].transpose(1, 0, 2)
     volumes = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
@@ -157,10 +161,11 @@ def measure(path):
     for name in ("f", "Density"):
         if name in names:
             error = np.abs(vtk_to_numpy(arrays.GetArray(name)) - field(points)).max()
-    print(f"{len(cells)} tetrahedra, volume {volumes.sum():.6f},"
+    print(f"{os.path.basename(path)}: {len(cells)} tetrahedra, volume {volumes.sum():.6f},"
           f" {'all' if volumes.min() > 0 else 'not all'} positive, {unshared} faces unshared,"
           f" field {'right' if error < 1e-6 else 'wrong'}: {' '.join(names)}")
 
 
 if __name__ == "__main__":
-    {"make": make, "measure": measure}[sys.argv[1]](sys.argv[2])
+    for argument in sys.argv[2:]:
+        {"make": make, "measure": measure}[sys.argv[1]](argument)
