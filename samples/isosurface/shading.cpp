@@ -146,15 +146,16 @@ void ShadingPass::draw(const CapturedSurfaces &captured, const OrbitCamera &came
                        GLuint framebuffer) const
 {
     const Gl &gl = empty_.gl();
-    const auto [width, height] = settings_.size;
-    gl.Viewport(0, 0, width, height);
+    const Size size = settings_.size;
+    gl.Viewport(0, 0, size.width, size.height);
     gl.Disable(GL_DEPTH_TEST);
     gl.Disable(GL_BLEND);
 
-    const glm::mat4 projection = camera.projection(settings_.size);
+    const glm::mat4 projection = camera.projection(size);
     const auto set_view = [&](const Program &program) {
-        gl.Uniform4f(program.uniform("view"), static_cast<float>(width), static_cast<float>(height),
-                     1.0F / projection[0][0], 1.0F / projection[1][1]);
+        gl.Uniform4f(program.uniform("view"), static_cast<float>(size.width),
+                     static_cast<float>(size.height), 1.0F / projection[0][0],
+                     1.0F / projection[1][1]);
     };
     const auto draw_into = [&](GLuint target) {
         gl.BindFramebuffer(GL_FRAMEBUFFER, target);
