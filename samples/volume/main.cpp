@@ -88,9 +88,10 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
     report.bytes_per_pixel = (*renderer)->bytes_per_pixel();
     if (options.measure_disorder) {
         auto disorder = kb::measure_disorder(gl, options, scene, faces, image);
-        if (!disorder)
-            return lacking(disorder.error());
-        report.disorder = std::move(*disorder);
+        if (disorder)
+            report.disorder = std::move(*disorder);
+        else
+            fmt::print("disorder: not measured: {}\n", disorder.error().message);
     }
     if (!options.json.empty()) {
         if (auto written = kb::write_report(options.json, options, scene, report); !written)
