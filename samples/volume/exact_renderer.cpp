@@ -32,6 +32,7 @@ void main()
 
 /// Narrow peaks of a transfer function want many texels.
 constexpr TableSize table_size{2049, 129};
+constexpr int cuts = 32;
 
 /// Texture units of the shaders below.
 enum Unit { fragments_unit, depths_unit, color_unit, front_unit, table_unit };
@@ -226,7 +227,7 @@ Result<std::unique_ptr<VolumeRenderer>> make_exact_renderer(const Gl &gl,
         return faces.error();
     auto add = Program::make(gl, full_screen_vertex_shader,
                              fmt::format("#version 330\n#define LAYERS {}\n", settings.k) +
-                                 make_volume_shader(table_size) + add_shader);
+                                 make_volume_shader(table_size, cuts) + add_shader);
     if (!add)
         return add.error();
     auto finish = Program::make(gl, full_screen_vertex_shader, finish_shader);

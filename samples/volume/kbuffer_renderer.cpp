@@ -82,7 +82,7 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k)
         text += fmt::format("uniform sampler2DArray attachment{};\n", a);
     text += "uniform vec3 background;\n"
             "layout(location = 0) out vec4 result;\n";
-    text += make_volume_shader(table_size);
+    text += make_volume_shader(table_size, 0);
     text += order_function;
     text += "void main()\n{\n"
             "    ivec2 pixel = ivec2(gl_FragCoord.xy);\n";

@@ -121,7 +121,7 @@ std::string make_volume_program(int k, TableSize table)
     return text;
 }
 
-std::string make_volume_shader(TableSize table)
+std::string make_volume_shader(TableSize table, int cuts)
 {
     const TableScale scale(table);
     const auto vector = [](const std::array<double, 4> &c) {
@@ -129,13 +129,14 @@ std::string make_volume_shader(TableSize table)
     };
     return fmt::format("uniform sampler2D thin;\n"
                        "uniform sampler2D fading;\n"
+                       "const float cuts = {}.0;\n"
                        "const float tag = {:.1f};\n"
                        "const float half_difference = {:.9f};\n"
                        "const vec2 table_scale = vec2({:.9f}, {:.9f});\n"
                        "const vec2 table_offset = vec2({:.9f}, 0.5);\n"
                        "const vec4 fade_numerator = {};\n"
                        "const vec4 fade_denominator = {};\n",
-                       SortedFaces::boundary_tag, PreintegratedTable::half_difference,
+                       cuts, SortedFaces::boundary_tag, PreintegratedTable::half_difference,
                        scale.mean_scale, scale.difference_scale, scale.mean_offset,
                        vector(fade_numerator), vector(fade_denominator)) +
            R"(
@@ -153,23 +154,34 @@ float polynomial(float x, vec4 c)
     return x * (c.x + x * (c.y + x * (c.z + x * c.w)));
 }
 
+void add_segment(float from, float to, float segment)
+{
+    float difference = to - from;
+    vec2 place = vec2(from + to, difference / (abs(difference) + half_difference)) *
+                     table_scale + table_offset;
+    vec4 optics = textureLod(thin, place, 0.0);
+    float depth = optics.w * segment;
+    float fade = polynomial(depth, fade_numerator) / (1.0 + polynomial(depth, fade_denominator));
+    optics.rgb += fade * difference * textureLod(fading, place, 0.0).rgb;
+    front.w += depth;
+    float alpha = 1.0 - exp(-front.w);
+    color = vec4(color.rgb + optics.rgb * (alpha - color.a), alpha);
+}
+
 void add(vec2 fragment)
 {
     float inside = floor(fragment.y / tag + 0.5);
     float scalar = fragment.y - inside * tag;
     float segment = fragment.x - front.x;
     if (segment > 0.0 && front.z > 0.5) {
-        float difference = scalar - front.y;
-        vec2 place = vec2(front.y + scalar, difference / (abs(difference) + half_difference)) *
-                         table_scale + table_offset;
-        vec4 optics = textureLod(thin, place, 0.0);
-        float depth = optics.w * segment;
-        float fade = polynomial(depth, fade_numerator) /
-                     (1.0 + polynomial(depth, fade_denominator));
-        optics.rgb += fade * difference * textureLod(fading, place, 0.0).rgb;
-        front.w += depth;
-        float alpha = 1.0 - exp(-front.w);
-        color = vec4(color.rgb + optics.rgb * (alpha - color.a), alpha);
+        float parts = max(ceil(abs(scalar - front.y) * cuts), 1.0);
+        float from = front.y;
+        for (float i = 1.0; i < parts; ++i) {
+            float to = mix(front.y, scalar, i / parts);
+            add_segment(from, to, segment / parts);
+            from = to;
+        }
+        add_segment(from, scalar, segment / parts);
     }
     front.z += inside;
     if (segment >= 0.0)

@@ -35,7 +35,9 @@ std::string make_volume_program(int k, TableSize table);
 ///     vec4 color;                entry 0
 ///     vec4 front;                entry 1
 ///
-/// and the uniforms sampler2D thin and fading, the table.
-std::string make_volume_shader(TableSize table);
+/// and the uniforms sampler2D thin and fading, the table. A segment is cut where its scalars are
+/// further apart than 1 / cuts, unless that is 0: the table neglects that extinction bends within
+/// opaque segments.
+std::string make_volume_shader(TableSize table, int cuts);
 
 } // namespace kb
