@@ -158,6 +158,9 @@ TEST(VolumeCommand, CellsWithoutVolumeChangeNoBit)
     const std::string good = directory.write("good.vtk", vtk_file(grid, VtkForm::binary));
     const std::string flat =
         directory.write("flat.vtk", vtk_file(with_flat_cells(grid), VtkForm::binary));
+    const std::string repaired =
+        "repaired: " + std::to_string(with_flat_cells(grid).cells.size() - grid.cells.size()) +
+        " cells without volume left out, 0 turned\n";
     const auto picture_of = [&](const std::vector<std::string> &arguments,
                                 const std::string &driver) {
         auto environment = mesa_environment(patched_prefix());
@@ -168,6 +171,9 @@ TEST(VolumeCommand, CellsWithoutVolumeChangeNoBit)
                                               arguments),
                                          environment);
         EXPECT_EQ(result.status, 0) << result.err;
+        if (std::ranges::find(arguments, "--repair") != arguments.end()) {
+            EXPECT_EQ(result.out.find(repaired), 0U) << result.out;
+        }
         std::ifstream file(out, std::ios::binary);
         return std::string(std::istreambuf_iterator<char>(file), {});
     };

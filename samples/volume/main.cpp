@@ -97,7 +97,7 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
         if (auto written = kb::write_report(options.json, options, scene, report); !written)
             return Failure{written.error(), kb::exit_bad_input};
     }
-    kb::print_report(options, report);
+    kb::print_report(options, scene, report);
 
     while ((*context)->present((*renderer)->framebuffer(), options.size, options.scene.camera)) {
         if (auto drawn = draw(); !drawn)

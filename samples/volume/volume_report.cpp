@@ -77,8 +77,12 @@ json to_json(const TransferPoint &point, ScalarRange range)
 
 } // namespace
 
-void print_report(const VolumeOptions &options, const VolumeReport &report)
+void print_report(const VolumeOptions &options, const VolumeScene &scene,
+                  const VolumeReport &report)
 {
+    if (options.scene.repair)
+        fmt::print("repaired: {} cells without volume left out, {} turned\n",
+                   scene.repairs.left_out, scene.repairs.turned);
     const Spread frame = spread(report, whole);
     const Spread sort = spread(report, [](const VolumeReport::Frame &f) { return f.sort; });
     fmt::print("volume {} k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times; sorting "

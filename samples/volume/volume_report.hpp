@@ -28,7 +28,8 @@ struct VolumeReport {
 };
 
 /// A line for people, and one about disorder.
-void print_report(const VolumeOptions &options, const VolumeReport &report);
+void print_report(const VolumeOptions &options, const VolumeScene &scene,
+                  const VolumeReport &report);
 
 /// What other renderers need to draw the same picture, and the times.
 Status write_report(const std::filesystem::path &path, const VolumeOptions &options,

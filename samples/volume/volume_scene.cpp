@@ -4,19 +4,15 @@
 
 #include "sorted_faces.hpp"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
-#include <cmath>
 
 namespace kb
 {
 
-static Result<TetGrid> make_grid(const VolumeSceneOptions &options)
+static Result<TetGrid> make_grid(const VolumeSceneOptions &options, GridRepairs &repairs)
 {
     if (options.grid.empty())
         return make_tet_grid({.cubes = options.cubes});
-    GridRepairs repairs;
     return options.repair ? load_and_repair_tet_grid(options.grid, repairs)
                           : load_tet_grid(options.grid);
 }
@@ -36,7 +32,8 @@ static Result<TransferFunction> make_transfer(const VolumeSceneOptions &options,
 
 Result<VolumeScene> make_volume_scene(const VolumeSceneOptions &options)
 {
-    auto grid = make_grid(options);
+    GridRepairs repairs;
+    auto grid = make_grid(options, repairs);
     if (!grid)
         return grid.error();
     const auto field = find_field(*grid, options.field);
@@ -47,22 +44,12 @@ Result<VolumeScene> make_volume_scene(const VolumeSceneOptions &options)
     if (!transfer)
         return transfer.error();
 
-    glm::vec3 low = grid->points.front();
-    glm::vec3 high = low;
-    for (const glm::vec3 &p : grid->points) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    const glm::vec3 center = 0.5F * (low + high);
-    float radius = 0.0F;
-    for (const glm::vec3 &p : grid->points)
-        radius = std::max(radius, glm::distance(p, center));
-    fit_to_unit_sphere(*grid);
-
+    const BoundingSphere sphere = fit_to_unit_sphere(*grid);
     FaceMesh faces = make_face_mesh(*grid, **field);
     const std::string name = (*field)->name;
-    return VolumeScene{std::move(*grid),    name, range, center, radius, std::move(faces),
-                       std::move(*transfer)};
+    return VolumeScene{
+        std::move(*grid),    repairs, name, range, sphere.center, sphere.radius, std::move(faces),
+        std::move(*transfer)};
 }
 
 } // namespace kb

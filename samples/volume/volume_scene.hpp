@@ -16,6 +16,7 @@ namespace kb
 /// What is drawn: the grid in the unit sphere.
 struct VolumeScene {
     TetGrid grid;
+    GridRepairs repairs;
     std::string field;
     ScalarRange range; ///< Of the field.
     glm::vec3 center;  ///< Of the grid as it came: a point p is now (p - center) / radius.
