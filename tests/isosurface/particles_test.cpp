@@ -76,7 +76,7 @@ TEST_F(ParticlesTest, OfTheDistanceFieldAreASphere)
     const double side = 2.0 * diagonal;
     constexpr float radius = 0.6F;
     const ImageRgbaF drawn = draw(set.points, distances, static_cast<float>(side),
-                                  static_cast<float>(2.5 * diagonal), radius, 6);
+                                  static_cast<float>(2.5 * diagonal), radius, 2);
 
     // A particle is up to half the diagonal of its square, and a pixel for the rasterizer, away
     // from the ray: so much its scalar may be wrong for the place on the ray. Between two of them
