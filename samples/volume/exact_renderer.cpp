@@ -32,7 +32,9 @@ void main()
 
 /// Narrow peaks of a transfer function want many texels.
 constexpr TableSize table_size{2049, 129};
-constexpr int cuts = 32;
+/// A prime number: cuts of a cell over all scalars do not fall onto steps at 1/2, 1/4, 1/10, at
+/// which the table is not exact.
+constexpr int cuts = 31;
 
 /// Texture units of the shaders below.
 enum Unit { fragments_unit, depths_unit, color_unit, front_unit, table_unit };
