@@ -21,7 +21,7 @@ namespace
 {
 
 /// Fine enough in the mean for the nearest texel to do: scalars are off by 1/4096 of their range.
-constexpr TableSize table_size{2049, 65};
+constexpr TableSize table_size{2049, 129};
 
 constexpr int table_unit = 8; ///< Of the flush: behind the attachments of the k-buffer.
 
