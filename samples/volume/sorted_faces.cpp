@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
+#include <thread>
 
 namespace kb
 {
@@ -129,6 +131,14 @@ SortedFaces::SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range, 
         }
     }
 
+    const auto processors =
+        static_cast<std::size_t>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U));
+    for (std::size_t i = 0; i < processors; ++i)
+        chosen_.push_back({static_cast<std::uint32_t>(triangles_.size() * i / processors),
+                           static_cast<std::uint32_t>(triangles_.size() * (i + 1) / processors),
+                           {},
+                           {}});
+
     gl.BindVertexArray(array_.id());
     gl.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_.id());
     gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(glm::vec4)),
@@ -190,21 +200,35 @@ float SortedFaces::key_of(const glm::uvec3 &triangle) const
     return order_by_ == FaceOrder::nearest_vertex ? std::min({a, b, c}) : a + b + c;
 }
 
-void SortedFaces::sort(const OrbitCamera &camera, Size size)
+void SortedFaces::choose(Chosen &chosen, glm::vec3 eye, Size size)
 {
-    project(camera, size);
-    const glm::vec3 eye(glm::inverse(camera.view())[3]);
-    // Of the faces that are sorted by their keys: all, or those by which rays leave the grid.
-    keyed_.clear();
-    keys_.clear();
-    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+    chosen.faces.clear();
+    chosen.keys.clear();
+    for (std::uint32_t i = chosen.first; i < chosen.last; ++i) {
         const Seen seen = see(triangles_[i], eye, size);
         if (cell_order_)
             seen_[i] = seen;
         if (cell_order_ ? i >= interior_count_ && seen == Seen::clockwise : seen != Seen::never) {
-            keyed_.push_back(i);
-            keys_.push_back(key_of(triangles_[i]));
+            chosen.faces.push_back(i);
+            chosen.keys.push_back(key_of(triangles_[i]));
         }
+    }
+}
+
+void SortedFaces::sort(const OrbitCamera &camera, Size size)
+{
+    project(camera, size);
+    const glm::vec3 eye(glm::inverse(camera.view())[3]);
+    std::vector<std::future<void>> work;
+    for (Chosen &chosen : chosen_)
+        work.push_back(std::async(std::launch::async, [&, this] { choose(chosen, eye, size); }));
+    for (auto &part : work)
+        part.get();
+    keyed_.clear();
+    keys_.clear();
+    for (const Chosen &chosen : chosen_) {
+        keyed_.insert(keyed_.end(), chosen.faces.begin(), chosen.faces.end());
+        keys_.insert(keys_.end(), chosen.keys.begin(), chosen.keys.end());
     }
     sort_by_key(keys_, order_);
     for (std::uint32_t &place : order_)

@@ -56,8 +56,18 @@ private:
         float depth; ///< Of the eye. Not positive: x and y mean nothing.
     };
 
+    /// Of a part of the faces those that are sorted by their keys: all that are seen, or, for the
+    /// order by cells, those by which rays leave the grid.
+    struct Chosen {
+        std::uint32_t first;
+        std::uint32_t last; ///< One behind the part's last face.
+        std::vector<std::uint32_t> faces;
+        std::vector<float> keys;
+    };
+
     void project(const OrbitCamera &camera, Size size);
     Seen see(const glm::uvec3 &triangle, glm::vec3 eye, Size size) const;
+    void choose(Chosen &chosen, glm::vec3 eye, Size size);
     float key_of(const glm::uvec3 &triangle) const;
 
     const Gl *gl_;
@@ -71,7 +81,8 @@ private:
     FaceOrder order_by_;
     std::optional<CellOrder> cell_order_; ///< If the order is by cells.
     std::vector<Projected> projected_;
-    std::vector<float> keys_;
+    std::vector<Chosen> chosen_; ///< A part for each processor.
+    std::vector<float> keys_;    ///< Of all parts.
     std::vector<std::uint32_t> keyed_;
     std::vector<Seen> seen_;
     std::vector<std::uint32_t> order_;
