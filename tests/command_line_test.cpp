@@ -191,6 +191,7 @@ TEST(CommandLine, IsosurfaceRefusesBadInput)
         {{"--k", "0"}, "--k"},
         {{"--k", "125"}, "--k"},
         {{"--k", "six"}, "--k"},
+        {{"--order", "random"}, "--order"},
         {{"--field", "no-such-field"}, "no-such-field"},
         {{"--grid", "/no/such/grid.vtk"}, "/no/such/grid.vtk"},
         {{"--grid", empty}, "empty.vtk"},

@@ -22,8 +22,9 @@ void main()
 class FaceStream final : public FragmentStream
 {
 public:
-    FaceStream(const Gl &gl, const FaceMesh &mesh, ScalarRange range, Program program)
-        : gl_(gl), faces_(gl, mesh, range), program_(std::move(program))
+    FaceStream(const Gl &gl, const FaceMesh &mesh, ScalarRange range, FaceOrder order,
+               Program program)
+        : gl_(gl), faces_(gl, mesh, range, order), program_(std::move(program))
     {
     }
 
@@ -48,13 +49,13 @@ private:
 } // namespace
 
 Result<std::unique_ptr<FragmentStream>> make_face_stream(const Gl &gl, const FaceMesh &mesh,
-                                                         ScalarRange range)
+                                                         ScalarRange range, FaceOrder order)
 {
     auto program = make_face_program(gl, fragment_shader);
     if (!program)
         return program.error();
     return std::unique_ptr<FragmentStream>(
-        std::make_unique<FaceStream>(gl, mesh, range, std::move(*program)));
+        std::make_unique<FaceStream>(gl, mesh, range, order, std::move(*program)));
 }
 
 } // namespace kb

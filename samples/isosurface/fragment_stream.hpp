@@ -34,7 +34,8 @@ public:
 
 /// The faces of a tetrahedral grid. Scalars are from 0 to 1 over the range.
 Result<std::unique_ptr<FragmentStream>> make_face_stream(const Gl &gl, const FaceMesh &mesh,
-                                                         ScalarRange range);
+                                                         ScalarRange range,
+                                                         FaceOrder order = FaceOrder::centroid);
 
 /// Particles as points: squares of the same size in the scene, which face the eye.
 Result<std::unique_ptr<FragmentStream>> make_particle_stream(const Gl &gl,

@@ -62,6 +62,19 @@ static void declare_surfaces(CLI::App &app, IsosurfaceOptions &options)
         ->check(CLI::Range(1, max_isosurface_k))
         ->type_name("N")
         ->capture_default_str();
+    app.add_option_function<std::string>(
+           "--order",
+           [&options](const std::string &word) {
+               options.order = word == "cells"     ? FaceOrder::cells
+                               : word == "nearest" ? FaceOrder::nearest_vertex
+                                                   : FaceOrder::centroid;
+           },
+           "A grid's faces are drawn in the order of their centroids, of their nearest vertices, "
+           "or "
+           "of the cells between them")
+        ->check(CLI::IsMember({"centroid", "nearest", "cells"}))
+        ->type_name("NAME")
+        ->default_str("centroid");
     add_number(app, "--point-size", options.point_size, 1e-5, 1.0, "LENGTH",
                "Side of a particle, in a scene whose bounding sphere has radius 1");
     add_number(app, "--gap", options.gap, 0.0, 1.0, "LENGTH",

@@ -26,7 +26,8 @@ struct IsosurfaceOptions {
     std::vector<IsoRequest> iso_values;
     int levels = 3; ///< So many iso-values if none was given.
     int k = 6;
-    std::optional<float> point_size; ///< In the scene, which is the unit sphere.
+    FaceOrder order = FaceOrder::centroid; ///< Of a grid.
+    std::optional<float> point_size;       ///< In the scene, which is the unit sphere.
     std::optional<float> gap;
     std::optional<int> smoothing;
     bool silhouettes = true;

@@ -29,6 +29,7 @@ static Result<Source> make_grid_source(const IsosurfaceOptions &options)
     fit_to_unit_sphere(grid->points);
     Source source;
     source.range = range_of((*field)->values);
+    source.order = options.order;
     source.faces = make_face_mesh(*grid, **field);
     return source;
 }
@@ -44,11 +45,9 @@ static Result<Source> make_particle_source(const IsosurfaceOptions &options)
     if (!field)
         return field.error();
     fit_to_unit_sphere(set->points);
-    return Source{Medium::particles,
-                  {},
-                  std::move(set->points),
-                  (*field)->values,
-                  range_of((*field)->values)};
+    return Source{Medium::particles,          {},
+                  std::move(set->points),     (*field)->values,
+                  range_of((*field)->values), FaceOrder::centroid};
 }
 
 Result<Source> make_source(const IsosurfaceOptions &options)
@@ -60,7 +59,7 @@ Result<std::unique_ptr<FragmentStream>> make_stream(const Gl &gl, const Source &
                                                     float point_size)
 {
     if (source.medium == Medium::grid)
-        return make_face_stream(gl, source.faces, source.range);
+        return make_face_stream(gl, source.faces, source.range, source.order);
     return make_particle_stream(gl, source.points, source.scalars, source.range, point_size);
 }
 

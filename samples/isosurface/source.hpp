@@ -20,6 +20,7 @@ struct Source {
     std::vector<glm::vec3> points;
     std::vector<float> scalars; ///< Of the points.
     ScalarRange range;
+    FaceOrder order = FaceOrder::centroid;
 };
 
 /// Loads or generates it.
