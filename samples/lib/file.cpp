@@ -2,13 +2,13 @@
 
 #include "file.hpp"
 
-#include <fstream>
+#include <utility>
 #include <vector>
 
 namespace kb
 {
 
-Result<std::string> read_file(const std::filesystem::path &path)
+Result<std::ifstream> open_file(const std::filesystem::path &path)
 {
     std::error_code code;
     if (!std::filesystem::exists(path, code))
@@ -18,11 +18,19 @@ Result<std::string> read_file(const std::filesystem::path &path)
     std::ifstream file(path, std::ios::binary);
     if (!file)
         return Error{"it cannot be opened"};
+    return {std::move(file)};
+}
+
+Result<std::string> read_file(const std::filesystem::path &path)
+{
+    auto file = open_file(path);
+    if (!file)
+        return file.error();
     std::string content;
     std::vector<char> block(1U << 20U);
-    while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0)
-        content.append(block.data(), static_cast<std::size_t>(file.gcount()));
-    if (file.bad())
+    while (file->read(block.data(), static_cast<std::streamsize>(block.size())), file->gcount() > 0)
+        content.append(block.data(), static_cast<std::size_t>(file->gcount()));
+    if (file->bad())
         return Error{"it cannot be read"};
     return content;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 
+#include "file.hpp"
 #include "mesh.hpp"
 
 #include <assimp/Importer.hpp>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <span>
 #include <sstream>
@@ -62,18 +62,13 @@ static Status check_ply(std::ifstream &file)
 
 static Status check_file(const std::filesystem::path &path)
 {
-    std::error_code code;
-    if (!std::filesystem::exists(path, code))
-        return Error{"no such file"};
-    if (std::filesystem::is_directory(path, code))
-        return Error{"it is a directory"};
-    std::ifstream file(path, std::ios::binary);
+    auto file = open_file(path);
     if (!file)
-        return Error{"it cannot be opened"};
+        return file.error();
     std::string line;
-    if (!std::getline(file, line))
+    if (!std::getline(*file, line))
         return Error{"it is empty"};
-    return line.starts_with("ply") ? check_ply(file) : Status(ok);
+    return line.starts_with("ply") ? check_ply(*file) : Status(ok);
 }
 
 /// What Assimp's own processing would trip over: it trusts the faces of the file.
