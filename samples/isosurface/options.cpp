@@ -2,6 +2,8 @@
 
 #include "options.hpp"
 
+#include "order_option.hpp"
+
 namespace kb
 {
 
@@ -62,19 +64,7 @@ static void declare_surfaces(CLI::App &app, IsosurfaceOptions &options)
         ->check(CLI::Range(1, max_isosurface_k))
         ->type_name("N")
         ->capture_default_str();
-    app.add_option_function<std::string>(
-           "--order",
-           [&options](const std::string &word) {
-               options.order = word == "cells"     ? FaceOrder::cells
-                               : word == "nearest" ? FaceOrder::nearest_vertex
-                                                   : FaceOrder::centroid;
-           },
-           "A grid's faces are drawn in the order of their centroids, of their nearest vertices, "
-           "or "
-           "of the cells between them")
-        ->check(CLI::IsMember({"centroid", "nearest", "cells"}))
-        ->type_name("NAME")
-        ->default_str("centroid");
+    add_order_option(app, options.order);
     add_number(app, "--point-size", options.point_size, 1e-5, 1.0, "LENGTH",
                "Side of a particle, in a scene whose bounding sphere has radius 1");
     add_number(app, "--gap", options.gap, 0.0, 1.0, "LENGTH",
@@ -84,34 +74,12 @@ static void declare_surfaces(CLI::App &app, IsosurfaceOptions &options)
     app.add_flag("!--no-silhouettes", options.silhouettes, "Draw no lines where the depth jumps");
 }
 
-static void declare_view(CLI::App &app, IsosurfaceOptions &options)
-{
-    add_number(app, "--azimuth", options.camera.azimuth, -360.0, 360.0, "DEG",
-               "Degrees about the vertical axis");
-    add_number(app, "--elevation", options.camera.elevation, -90.0, 90.0, "DEG",
-               "Degrees from above");
-    add_number(app, "--distance", options.camera.distance, 1.02, 20.0, "LENGTH",
-               "Of the eye from the middle of the scene, which has radius 1");
-    add_number(app, "--field-of-view", options.camera.field_of_view, 1.0, 120.0, "DEG",
-               "Of the shorter side of the picture");
-    app.add_option_function<std::vector<float>>(
-           "--background",
-           [&options](const std::vector<float> &c) {
-               options.background = {c[0], c[1], c[2]};
-           },
-           "Red, green and blue from 0 to 1")
-        ->expected(3)
-        ->delimiter(',')
-        ->check([](const std::string &text) { return check_number(text, 0.0, 1.0); })
-        ->type_name("R,G,B")
-        ->default_str("1,1,1");
-}
-
 void declare_options(CLI::App &app, IsosurfaceOptions &options)
 {
     declare_source(app, options);
     declare_surfaces(app, options);
-    declare_view(app, options);
+    add_camera_options(app, options.camera);
+    add_background_option(app, options.background);
     add_context_option(app, options.context);
     add_size_option(app, options.size);
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")

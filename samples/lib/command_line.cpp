@@ -82,6 +82,48 @@ CLI::Option *add_size_option(CLI::App &app, Size &size)
         ->default_str(fmt::format("{}x{}", size.width, size.height));
 }
 
+static void add_number_option(CLI::App &app, const char *name, float &value, double low,
+                              double high, const char *type, const char *help)
+{
+    app.add_option(name, value, help)
+        ->check([=](const std::string &text) { return check_number(text, low, high); })
+        ->type_name(type)
+        ->capture_default_str();
+}
+
+void add_turning_options(CLI::App &app, OrbitCamera &camera)
+{
+    add_number_option(app, "--azimuth", camera.azimuth, -360.0, 360.0, "DEG",
+                      "Degrees about the vertical axis");
+    add_number_option(app, "--elevation", camera.elevation, -90.0, 90.0, "DEG",
+                      "Degrees from above");
+}
+
+void add_camera_options(CLI::App &app, OrbitCamera &camera)
+{
+    add_turning_options(app, camera);
+    add_number_option(app, "--distance", camera.distance, 1.02, 20.0, "LENGTH",
+                      "Of the eye from the middle of the scene, which has radius 1");
+    add_number_option(app, "--field-of-view", camera.field_of_view, 1.0, 120.0, "DEG",
+                      "Of the shorter side of the picture");
+}
+
+CLI::Option *add_background_option(CLI::App &app, glm::vec3 &background)
+{
+    return app
+        .add_option_function<std::vector<float>>(
+            "--background",
+            [&background](const std::vector<float> &c) {
+                background = {c[0], c[1], c[2]};
+            },
+            "Red, green and blue from 0 to 1")
+        ->expected(3)
+        ->delimiter(',')
+        ->check([](const std::string &text) { return check_number(text, 0.0, 1.0); })
+        ->type_name("R,G,B")
+        ->default_str(fmt::format("{},{},{}", background.r, background.g, background.b));
+}
+
 CLI::Option *add_context_option(CLI::App &app, std::string &kind)
 {
     return app

@@ -30,6 +30,15 @@ std::string check_number(const std::string &text, double low, double high);
 /// --size WxH, each side from 1 to 8192.
 CLI::Option *add_size_option(CLI::App &app, Size &size);
 
+/// --azimuth and --elevation of a camera that turns about the scene.
+void add_turning_options(CLI::App &app, OrbitCamera &camera);
+
+/// Those, --distance and --field-of-view.
+void add_camera_options(CLI::App &app, OrbitCamera &camera);
+
+/// --background R,G,B
+CLI::Option *add_background_option(CLI::App &app, glm::vec3 &background);
+
 /// --context osmesa|egl|glfw
 CLI::Option *add_context_option(CLI::App &app, std::string &kind);
 

@@ -17,12 +17,7 @@ void add_scene_options(CLI::App &app, SceneOptions &options, const std::string &
     app.add_option("--alpha", options.alpha, alpha_help)
         ->check([](const std::string &text) { return check_number(text, 0.0, 1.0); })
         ->type_name("A");
-    app.add_option("--azimuth", options.camera.azimuth, "Degrees about the vertical axis")
-        ->check([](const std::string &text) { return check_number(text, -360.0, 360.0); })
-        ->type_name("DEG");
-    app.add_option("--elevation", options.camera.elevation, "Degrees from above")
-        ->check([](const std::string &text) { return check_number(text, -90.0, 90.0); })
-        ->type_name("DEG");
+    add_turning_options(app, options.camera);
 }
 
 Result<Mesh> make_mesh(const SceneOptions &options)

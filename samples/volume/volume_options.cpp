@@ -2,21 +2,13 @@
 
 #include "volume_options.hpp"
 
+#include "order_option.hpp"
 #include "volume_program.hpp"
 
 #include <fmt/format.h>
 
 namespace kb
 {
-
-static void add_number(CLI::App &app, const char *name, float &value, double low, double high,
-                       const char *help)
-{
-    app.add_option(name, value, help)
-        ->check([=](const std::string &text) { return check_number(text, low, high); })
-        ->type_name("X")
-        ->capture_default_str();
-}
 
 static void declare_scene_options(CLI::App &app, VolumeSceneOptions &options)
 {
@@ -40,13 +32,7 @@ static void declare_scene_options(CLI::App &app, VolumeSceneOptions &options)
     app.add_option("--transfer-points", options.transfer_points,
                    "Lines of such a file, with ; between them")
         ->type_name("TEXT");
-    add_number(app, "--azimuth", options.camera.azimuth, -360.0, 360.0,
-               "Degrees about the vertical axis");
-    add_number(app, "--elevation", options.camera.elevation, -90.0, 90.0, "Degrees from above");
-    add_number(app, "--distance", options.camera.distance, 1.02, 20.0,
-               "Of the eye from the middle of the grid, which has radius 1");
-    add_number(app, "--field-of-view", options.camera.field_of_view, 1.0, 120.0,
-               "Degrees, of the shorter side of the picture");
+    add_camera_options(app, options.camera);
 }
 
 void declare_options(CLI::App &app, VolumeOptions &options)
@@ -61,18 +47,7 @@ void declare_options(CLI::App &app, VolumeOptions &options)
         ->capture_default_str();
     app.add_flag("--exact", options.exact,
                  "Put every fragment in its place, in as many passes as it takes");
-    app.add_option_function<std::string>(
-           "--order",
-           [&options](const std::string &word) {
-               options.order = word == "cells"     ? FaceOrder::cells
-                               : word == "nearest" ? FaceOrder::nearest_vertex
-                                                   : FaceOrder::centroid;
-           },
-           "Faces are drawn in the order of their centroids, of their nearest vertices, or of the "
-           "cells between them, which is right but where rays leave the grid and come back")
-        ->check(CLI::IsMember({"centroid", "nearest", "cells"}))
-        ->type_name("NAME")
-        ->default_str("centroid");
+    add_order_option(app, options.order);
     app.add_option("--budget", options.budget,
                    "Subdivide faces until there are this many times as many, for less disorder")
         ->check([](const std::string &text) { return check_number(text, 1.0, 64.0); })
@@ -91,17 +66,7 @@ void declare_options(CLI::App &app, VolumeOptions &options)
     app.add_flag(
         "!--no-disorder", options.measure_disorder,
         "Do not measure how far from depth order fragments arrive, and what that does to colors");
-    app.add_option_function<std::vector<float>>(
-           "--background",
-           [&options](const std::vector<float> &c) {
-               options.background = {c[0], c[1], c[2]};
-           },
-           "Red, green and blue from 0 to 1")
-        ->expected(3)
-        ->delimiter(',')
-        ->check([](const std::string &text) { return check_number(text, 0.0, 1.0); })
-        ->type_name("R,G,B")
-        ->default_str("1,1,1");
+    add_background_option(app, options.background);
     add_context_option(app, options.context);
     add_size_option(app, options.size);
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")

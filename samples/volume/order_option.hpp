@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include "command_line.hpp"
+#include "sorted_faces.hpp"
+
+namespace kb
+{
+
+/// --order centroid|nearest|cells
+CLI::Option *add_order_option(CLI::App &app, FaceOrder &order);
+
+} // namespace kb
