@@ -8,6 +8,7 @@ import os
 import sys
 
 import results
+from parts import write_whole
 
 
 def main(source, target):
@@ -21,12 +22,7 @@ def main(source, target):
         sys.exit(f"Python has no module {error.name}: install the package python3-{error.name}")
     folder = os.path.dirname(os.path.abspath(target))
     text = page.make(study, os.path.relpath(source, folder))
-    try:
-        with open(target + ".new", "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(target + ".new", target)
-    except OSError as error:
-        sys.exit(f"{target}: {error.strerror}")
+    write_whole(target, text)
 
 
 if __name__ == "__main__":

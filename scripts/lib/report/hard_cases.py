@@ -11,7 +11,7 @@ import os
 import sys
 from html import escape
 
-from parts import document, table
+from parts import document, table, write_whole
 
 DRIVERS = ("llvmpipe", "softpipe")
 METHODS = ("depth-peeling", "kbuffer-program")
@@ -250,12 +250,6 @@ and what was measured, by both extensions on both drivers. The raw data is in
 {details}""")
 
 
-def _write(path, text):
-    with open(path + ".new", "w", encoding="utf-8") as file:
-        file.write(text)
-    os.replace(path + ".new", path)
-
-
 def main(folder, target):
     try:
         documents = {}
@@ -265,8 +259,8 @@ def main(folder, target):
                 documents[name] = json.load(file)
         data = os.path.splitext(target)[0] + ".json"
         cases = Cases(documents)
-        _write(data, json.dumps({"drivers": cases.drivers, "rows": cases.rows}, indent=1) + "\n")
-        _write(target, make(cases, os.path.basename(data)))
+        write_whole(data, json.dumps({"drivers": cases.drivers, "rows": cases.rows}, indent=1) + "\n")
+        write_whole(target, make(cases, os.path.basename(data)))
     except OSError as error:
         sys.exit(f"{error.filename}: {error.strerror}")
     except ValueError as error:

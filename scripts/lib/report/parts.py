@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What the report's pages have in common: their look, tables, the frame of a document."""
 
+import os
+import sys
 from html import escape
 
 STYLE = """
@@ -72,3 +74,13 @@ def document(title, body):
 </body>
 </html>
 """
+
+
+def write_whole(target, text):
+    """There is a whole file or none. Ends the program if it cannot be written."""
+    try:
+        with open(target + ".new", "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(target + ".new", target)
+    except OSError as error:
+        sys.exit(f"{target}: {error.strerror}")

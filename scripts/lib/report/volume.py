@@ -10,7 +10,7 @@ import os
 import sys
 from html import escape
 
-from parts import document, table
+from parts import document, table, write_whole
 
 GUIDE = """
 <h2>How to read this</h2>
@@ -168,12 +168,7 @@ def main(source, target):
         sys.exit(f"{source}: a row has no {error}")
     except (OSError, Malformed) as error:
         sys.exit(f"{source}: {getattr(error, 'strerror', None) or error}")
-    try:
-        with open(target + ".new", "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(target + ".new", target)
-    except OSError as error:
-        sys.exit(f"{target}: {error.strerror}")
+    write_whole(target, text)
 
 
 if __name__ == "__main__":
