@@ -5,6 +5,7 @@
 
 #include "image.hpp"
 #include "process.hpp"
+#include "refusal.hpp"
 #include "temp_directory.hpp"
 
 #include <gtest/gtest.h>
@@ -17,16 +18,6 @@ namespace
 {
 
 using namespace kb::test;
-
-void expect_refused(const ProcessResult &result, const std::string &program,
-                    const std::string &mention, int status = 2)
-{
-    EXPECT_EQ(result.status, status);
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(result.err.find(program + ": "), 0U) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    EXPECT_NE(result.err.find(mention), std::string::npos) << result.err;
-}
 
 TEST(CommandLine, TransparencyRefusesBadInput)
 {
