@@ -405,7 +405,8 @@ std::vector<Case> volume_cases()
         {15,
          "zero-length segment",
          "Two faces at one depth contribute exactly 0: inserting one anywhere changes no bit",
-         {{"", {.k = 32, .size = usual_size}}},
+         // Each face twice: fragments come twice as many places late.
+         {{"", {.k = 64, .size = small}}},
          no_length,
          "",
          about_order},
