@@ -121,6 +121,24 @@ TEST(VolumeCommand, RefusesBadGrids)
                            "it has no cells");
 }
 
+TEST(VolumeCommand, IsosurfaceSaysWhatItRepairedAndMeasured)
+{
+    const TempDirectory directory;
+    std::string content = vtk_file(two_cells(), VtkForm::ascii);
+    content.replace(content.find("4 0 1 2 3"), 9, "4 1 0 2 3");
+    const std::vector<std::string> command{
+        KBUFFER_ISOSURFACE, "--size", "16x16", "--grid", directory.write("grid.vtk", content),
+        "--repair"};
+    const auto environment = mesa_environment(patched_prefix());
+    const std::string repaired = "repaired: 0 cells without volume left out, 1 turned\n";
+    const std::string all = run(command, environment).out;
+    EXPECT_EQ(all.find(repaired), 0U) << all;
+    EXPECT_NE(all.find("\ndisorder: up to "), std::string::npos) << all;
+    const std::string some = run(with(command, {"--no-disorder"}), environment).out;
+    EXPECT_EQ(some.find(repaired), 0U) << some;
+    EXPECT_EQ(some.find("disorder"), std::string::npos) << some;
+}
+
 /// A generated grid with cells of no volume among the others: with points that are the same, and
 /// with four points of a plane.
 kb::TetGrid with_flat_cells(kb::TetGrid grid)

@@ -2,6 +2,7 @@
 
 #include "fragment_stream.hpp"
 
+#include "disorder_capture.hpp"
 #include "face_program.hpp"
 
 namespace kb
@@ -30,10 +31,15 @@ public:
 
     void sort(const OrbitCamera &camera, Size size) override { faces_.sort(camera, size); }
 
-    void draw(const OrbitCamera &camera, Size size) override
+    void draw(const OrbitCamera &camera, Size size) const override
     {
         use_face_program(gl_, program_, camera, size);
         faces_.draw();
+    }
+
+    Result<Disorder> capture_disorder(const OrbitCamera &camera, Size size) const override
+    {
+        return kb::capture_disorder(gl_, faces_, camera, size);
     }
 
     Medium medium() const override { return Medium::grid; }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "camera.hpp"
+#include "disorder.hpp"
 #include "gl_objects.hpp"
 #include "iso_program.hpp"
 #include "sorted_faces.hpp"
@@ -25,7 +26,10 @@ public:
     virtual void sort(const OrbitCamera &camera, Size size) = 0;
 
     /// Draws all of them into the framebuffer that is bound.
-    virtual void draw(const OrbitCamera &camera, Size size) = 0;
+    virtual void draw(const OrbitCamera &camera, Size size) const = 0;
+
+    /// How far from depth order the fragments come, since the last sort, which was for this camera.
+    virtual Result<Disorder> capture_disorder(const OrbitCamera &camera, Size size) const = 0;
 
     virtual Medium medium() const = 0;
     virtual std::size_t count() const = 0;

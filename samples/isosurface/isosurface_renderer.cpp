@@ -85,7 +85,7 @@ Status IsosurfaceRenderer::set_iso_values(std::span<const IsoValue> values)
     return check_gl(*gl_, "making the table of iso-values");
 }
 
-void IsosurfaceRenderer::capture(FragmentStream &stream, const OrbitCamera &camera)
+void IsosurfaceRenderer::capture(const FragmentStream &stream, const OrbitCamera &camera)
 {
     kbuffer_.clear(glm::vec4(0.0F));
     gl_->Disable(GL_DEPTH_TEST);

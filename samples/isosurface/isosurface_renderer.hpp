@@ -30,7 +30,7 @@ public:
     Status set_iso_values(std::span<const IsoValue> values);
 
     /// Finds the surfaces of a stream that is sorted for this camera.
-    void capture(FragmentStream &stream, const OrbitCamera &camera);
+    void capture(const FragmentStream &stream, const OrbitCamera &camera);
 
     /// Shades them into a picture: color attachment 0 of framebuffer().
     void shade(const OrbitCamera &camera);

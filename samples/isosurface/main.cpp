@@ -7,6 +7,7 @@
 //     resolve                    ShadingPass
 
 #include "context.hpp"
+#include "isosurface_disorder.hpp"
 #include "isosurface_renderer.hpp"
 #include "options.hpp"
 #include "particles.hpp"
@@ -90,7 +91,8 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
     auto stream = kb::make_stream(gl, source, point_size(options, source));
     if (!stream)
         return lacking(stream.error());
-    auto renderer = kb::IsosurfaceRenderer::make(gl, settings_for(options, source));
+    const kb::IsosurfaceSettings settings = settings_for(options, source);
+    auto renderer = kb::IsosurfaceRenderer::make(gl, settings);
     if (!renderer)
         return lacking(renderer.error());
     const auto chosen = kb::choose_iso_values(options, source.range);
@@ -118,12 +120,20 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
             return bad_input(written.error());
     }
 
+    if (options.repair)
+        fmt::print("{}\n", describe(source.repairs));
     const kb::Spread spread = kb::spread_of(times);
     fmt::print("isosurface k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), 1 geometry "
                "pass, {} {}, {} iso-value{}, {} bytes per pixel\n",
                options.k, options.size.width, options.size.height, spread.median, spread.p5,
                spread.p95, times.size(), (*stream)->count(), (*stream)->primitive(), chosen.size(),
                chosen.size() == 1 ? "" : "s", renderer->bytes_per_pixel());
+    if (options.measure_disorder) {
+        const auto disorder =
+            kb::measure_disorder(gl, settings, **stream, options.camera, values, picture);
+        fmt::print("{}\n", disorder ? describe(*disorder, options.k)
+                                    : "disorder: not measured: " + disorder.error().message);
+    }
 
     while ((*context)->present(renderer->framebuffer(), options.size, options.camera))
         draw();

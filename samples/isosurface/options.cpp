@@ -72,6 +72,7 @@ static void declare_surfaces(CLI::App &app, IsosurfaceOptions &options)
     add_number(app, "--smoothing", options.smoothing, 0, 64, "PIXELS",
                "Make depths smooth over so many pixels before normals are taken; 0: do not");
     app.add_flag("!--no-silhouettes", options.silhouettes, "Draw no lines where the depth jumps");
+    add_disorder_option(app, options.measure_disorder);
 }
 
 void declare_options(CLI::App &app, IsosurfaceOptions &options)

@@ -31,6 +31,7 @@ struct IsosurfaceOptions {
     std::optional<float> gap;
     std::optional<int> smoothing;
     bool silhouettes = true;
+    bool measure_disorder = true;
     glm::vec3 background{1.0F};
     OrbitCamera camera;
     Size size;

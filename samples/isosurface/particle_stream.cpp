@@ -4,6 +4,7 @@
 
 #include "fragment_stream.hpp"
 
+#include "disorder_capture.hpp"
 #include "radix_sort.hpp"
 
 #include <glm/gtc/type_ptr.hpp>
@@ -82,16 +83,36 @@ public:
                        order_.data(), GL_STREAM_DRAW);
     }
 
-    void draw(const OrbitCamera &camera, Size size) override
+    void draw(const OrbitCamera &camera, Size size) const override
+    {
+        draw_with(program_, camera, size);
+    }
+
+    Result<Disorder> capture_disorder(const OrbitCamera &camera, Size size) const override
+    {
+        const auto program =
+            Program::make(gl_, vertex_shader, std::string("#version 330\n") + arrival_shader);
+        if (!program)
+            return program.error();
+        // A particle makes one fragment of a pixel at most.
+        return kb::capture_disorder(gl_, size, count(), [&] { draw_with(*program, camera, size); });
+    }
+
+    Medium medium() const override { return Medium::particles; }
+    std::size_t count() const override { return points_.size(); }
+    std::string_view primitive() const override { return "points"; }
+
+private:
+    void draw_with(const Program &program, const OrbitCamera &camera, Size size) const
     {
         const glm::mat4 projection = camera.projection(size);
-        program_.use();
-        gl_.UniformMatrix4fv(program_.uniform("view"), 1, GL_FALSE, glm::value_ptr(camera.view()));
-        gl_.UniformMatrix4fv(program_.uniform("projection"), 1, GL_FALSE,
+        program.use();
+        gl_.UniformMatrix4fv(program.uniform("view"), 1, GL_FALSE, glm::value_ptr(camera.view()));
+        gl_.UniformMatrix4fv(program.uniform("projection"), 1, GL_FALSE,
                              glm::value_ptr(projection));
-        gl_.Uniform1f(program_.uniform("size"),
+        gl_.Uniform1f(program.uniform("size"),
                       point_size_ * projection[1][1] * 0.5F * static_cast<float>(size.height));
-        gl_.Uniform4f(program_.uniform("view_size"), static_cast<float>(size.width),
+        gl_.Uniform4f(program.uniform("view_size"), static_cast<float>(size.width),
                       static_cast<float>(size.height), 1.0F / projection[0][0],
                       1.0F / projection[1][1]);
         gl_.Enable(GL_PROGRAM_POINT_SIZE);
@@ -100,11 +121,6 @@ public:
         gl_.Disable(GL_PROGRAM_POINT_SIZE);
     }
 
-    Medium medium() const override { return Medium::particles; }
-    std::size_t count() const override { return points_.size(); }
-    std::string_view primitive() const override { return "points"; }
-
-private:
     const Gl &gl_;
     Program program_;
     VertexArray array_;

@@ -8,26 +8,24 @@
 namespace kb
 {
 
-static Result<TetGrid> make_grid(const IsosurfaceOptions &options)
+static Result<TetGrid> make_grid(const IsosurfaceOptions &options, GridRepairs &repairs)
 {
     if (options.grid.empty())
         return make_tet_grid();
-    if (!options.repair)
-        return load_tet_grid(options.grid);
-    GridRepairs repairs;
-    return load_and_repair_tet_grid(options.grid, repairs);
+    return options.repair ? load_and_repair_tet_grid(options.grid, repairs)
+                          : load_tet_grid(options.grid);
 }
 
 static Result<Source> make_grid_source(const IsosurfaceOptions &options)
 {
-    auto grid = make_grid(options);
+    Source source;
+    auto grid = make_grid(options, source.repairs);
     if (!grid)
         return grid.error();
     const auto field = find_field(grid->fields, options.field);
     if (!field)
         return field.error();
     fit_to_unit_sphere(grid->points);
-    Source source;
     source.range = range_of((*field)->values);
     source.order = options.order;
     source.faces = make_face_mesh(*grid, **field);
@@ -45,9 +43,12 @@ static Result<Source> make_particle_source(const IsosurfaceOptions &options)
     if (!field)
         return field.error();
     fit_to_unit_sphere(set->points);
-    return Source{Medium::particles,          {},
-                  std::move(set->points),     (*field)->values,
-                  range_of((*field)->values), FaceOrder::centroid};
+    Source source;
+    source.medium = Medium::particles;
+    source.range = range_of((*field)->values);
+    source.points = std::move(set->points);
+    source.scalars = (*field)->values;
+    return source;
 }
 
 Result<Source> make_source(const IsosurfaceOptions &options)

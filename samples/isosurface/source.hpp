@@ -16,6 +16,7 @@ namespace kb
 /// What has the surfaces, in the unit sphere: the faces of a grid, or particles.
 struct Source {
     Medium medium = Medium::grid;
+    GridRepairs repairs;
     FaceMesh faces;
     std::vector<glm::vec3> points;
     std::vector<float> scalars; ///< Of the points.

@@ -92,6 +92,12 @@ Status check_point_set(const PointSet &set)
     return check_points(set.points, set.fields);
 }
 
+std::string describe(const GridRepairs &repairs)
+{
+    return fmt::format("repaired: {} cells without volume left out, {} turned", repairs.left_out,
+                       repairs.turned);
+}
+
 GridRepairs repair_tet_grid(TetGrid &grid)
 {
     GridRepairs repairs;

@@ -65,6 +65,9 @@ struct GridRepairs {
     std::size_t turned = 0;   ///< Cells that were inverted.
 };
 
+/// A line for people.
+std::string describe(const GridRepairs &repairs);
+
 /// Leaves cells without volume out and turns inverted ones.
 GridRepairs repair_tet_grid(TetGrid &grid);
 

@@ -20,16 +20,6 @@ namespace
 constexpr int layers_a_pass = 32;
 constexpr std::uint32_t no_fragment = std::numeric_limits<std::uint32_t>::max();
 
-/// A fragment arrives in the order of the triangles of the draw call.
-constexpr const char *arrival_shader = R"(
-layout(location = 0) out uint arrival;
-
-void main()
-{
-    arrival = uint(gl_PrimitiveID);
-}
-)";
-
 /// What the fragments of each pixel say, by their depth.
 using Arrivals = std::vector<std::vector<std::uint32_t>>;
 
@@ -45,12 +35,9 @@ void append_layers(const Gl &gl, const DepthPeeling &peeling, Arrivals &pixels)
     }
 }
 
-Result<Arrivals> capture_arrivals(const Gl &gl, const SortedFaces &faces, const OrbitCamera &camera,
-                                  Size size)
+Result<Arrivals> capture_arrivals(const Gl &gl, Size size, std::size_t most_layers,
+                                  const std::function<void()> &draw)
 {
-    const auto program = make_face_program(gl, arrival_shader);
-    if (!program)
-        return program.error();
     PeelingLayers layers;
     layers.size = size;
     layers.count = layers_a_pass;
@@ -65,17 +52,15 @@ Result<Arrivals> capture_arrivals(const Gl &gl, const SortedFaces &faces, const 
     for (bool more = true; status && more;) {
         peeling->clear();
         gl.ClearBufferuiv(GL_COLOR, 0, empty.data());
-        use_face_program(gl, *program, camera, size);
         gl.Enable(GL_DEPTH_PEELING_MESA);
-        faces.draw();
+        draw();
         gl.Disable(GL_DEPTH_PEELING_MESA);
         append_layers(gl, *peeling, pixels);
         more = peeling->overflow();
-        // A face makes one fragment of a pixel at most.
-        if (more && static_cast<std::size_t>(peeling->first_layer()) > faces.count())
-            return Error{fmt::format("{} layers have not come to the end of {} faces: this is an "
-                                     "error of the driver",
-                                     peeling->first_layer() + layers_a_pass, faces.count())};
+        if (more && static_cast<std::size_t>(peeling->first_layer()) > most_layers)
+            return Error{fmt::format("{} layers have not come to the end of {} primitives: this is "
+                                     "an error of the driver",
+                                     peeling->first_layer() + layers_a_pass, most_layers)};
         if (more)
             status = peeling->advance();
     }
@@ -84,7 +69,7 @@ Result<Arrivals> capture_arrivals(const Gl &gl, const SortedFaces &faces, const 
     if (auto drawn = check_gl(gl, "capturing the order of fragments"); !drawn)
         return drawn.error();
     // softpipe draws nothing with a shader that reads gl_PrimitiveID.
-    if (!faces.order().empty() &&
+    if (most_layers > 0 &&
         std::ranges::all_of(pixels, [](const auto &pixel) { return pixel.empty(); }))
         return Error{fmt::format("no fragment says when it arrives ({})", describe_driver(gl))};
     return pixels;
@@ -92,16 +77,29 @@ Result<Arrivals> capture_arrivals(const Gl &gl, const SortedFaces &faces, const 
 
 } // namespace
 
-Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, const OrbitCamera &camera,
-                                  Size size)
+Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t most_layers,
+                                  const std::function<void()> &draw)
 {
-    const auto pixels = capture_arrivals(gl, faces, camera, size);
+    const auto pixels = capture_arrivals(gl, size, most_layers, draw);
     if (!pixels)
         return pixels.error();
     Disorder disorder;
     for (const std::vector<std::uint32_t> &arrivals : *pixels)
         disorder.add_pixel(arrivals);
     return disorder;
+}
+
+Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, const OrbitCamera &camera,
+                                  Size size)
+{
+    const auto program = make_face_program(gl, arrival_shader);
+    if (!program)
+        return program.error();
+    // A face makes one fragment of a pixel at most.
+    return capture_disorder(gl, size, faces.order().size(), [&] {
+        use_face_program(gl, *program, camera, size);
+        faces.draw();
+    });
 }
 
 } // namespace kb

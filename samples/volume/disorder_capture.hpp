@@ -5,12 +5,31 @@
 #include "disorder.hpp"
 #include "sorted_faces.hpp"
 
+#include <cstddef>
+#include <functional>
+
 namespace kb
 {
 
-/// The disorder of the fragments of all faces, in the order of their last sort, which was for this
-/// camera. It is exact: depth peeling with continuation puts all fragments of a pixel in depth
-/// order, equal depths in the order in which they arrive, and each says when that is.
+/// The end of a fragment shader that says when a fragment arrives: in the order of the primitives
+/// of the draw command.
+inline constexpr const char *arrival_shader = R"(
+layout(location = 0) out uint arrival;
+
+void main()
+{
+    arrival = uint(gl_PrimitiveID);
+}
+)";
+
+/// The disorder of the fragments that `draw` draws by one command and a program that ends with
+/// arrival_shader. It is exact: depth peeling with continuation puts all fragments of a pixel in
+/// depth order, equal depths in the order in which they arrive. A pixel gets no more than
+/// `most_layers` of them.
+Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t most_layers,
+                                  const std::function<void()> &draw);
+
+/// That of all faces, in the order of their last sort, which was for this camera.
 Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, const OrbitCamera &camera,
                                   Size size);
 

@@ -2,29 +2,12 @@
 
 #include "disorder_report.hpp"
 
-#include "disorder_capture.hpp"
-#include "kbuffer.hpp"
-#include "volume_renderer.hpp"
+#include <fmt/format.h>
 
 #include <cmath>
 
 namespace kb
 {
-
-static Result<ImageRgbaF> draw_exact(const Gl &gl, const VolumeOptions &options,
-                                     const VolumeScene &scene)
-{
-    VolumeSettings settings{options.size, 0, scene.transfer, options.background};
-    settings.k = 32; // Layers a pass: many, as each pass draws all faces.
-    const auto renderer = make_exact_renderer(gl, settings);
-    if (!renderer)
-        return renderer.error();
-    SortedFaces faces(gl, scene.faces, scene.range);
-    faces.sort(options.scene.camera, options.size);
-    if (auto drawn = (*renderer)->draw(faces, options.scene.camera); !drawn)
-        return drawn.error();
-    return read_color(gl, (*renderer)->framebuffer(), options.size);
-}
 
 Result<Difference> color_error(const ImageRgbaF &picture, const ImageRgbaF &exact,
                                std::uint64_t pixels)
@@ -39,24 +22,18 @@ Result<Difference> color_error(const ImageRgbaF &picture, const ImageRgbaF &exac
     return difference;
 }
 
-Result<DisorderReport> measure_disorder(const Gl &gl, const VolumeOptions &options,
-                                        const VolumeScene &scene, const SortedFaces &faces,
-                                        const ImageRgbaF &picture)
+std::string describe(const DisorderReport &report, int k)
 {
-    auto fragments = capture_disorder(gl, faces, options.scene.camera, options.size);
-    if (!fragments)
-        return fragments.error();
-    DisorderReport report{std::move(*fragments), {}};
-    if (options.exact)
-        return report;
-    const auto exact = draw_exact(gl, options, scene);
-    if (!exact)
-        return exact.error();
-    const auto colors = color_error(picture, *exact, report.fragments.pixels());
-    if (!colors)
-        return colors.error();
-    report.colors = *colors;
-    return report;
+    const Disorder &fragments = report.fragments;
+    std::string text = fmt::format(
+        "disorder: up to {} place{} late of {} fragments, {} pixels", fragments.displacement(),
+        fragments.displacement() == 1 ? "" : "s", fragments.deepest(), fragments.pixels());
+    if (report.colors)
+        text += fmt::format("; {:.4g} % of them out of order with k = {}, colors off by {:.2g} at "
+                            "most (RMS {:.2g}), by more than 1/255 in {:.4g} %",
+                            100.0 * fragments.share_wrong(k), k, report.colors->max,
+                            report.colors->rmse, 100.0 * report.colors->share);
+    return text;
 }
 
 } // namespace kb

@@ -9,11 +9,11 @@
 //     flush   the fragments that still wait
 
 #include "context.hpp"
-#include "disorder_report.hpp"
 #include "kbuffer.hpp"
 #include "output.hpp"
 #include "subdivide.hpp"
 #include "timing.hpp"
+#include "volume_disorder.hpp"
 #include "volume_options.hpp"
 #include "volume_renderer.hpp"
 #include "volume_report.hpp"

@@ -23,4 +23,11 @@ CLI::Option *add_order_option(CLI::App &app, FaceOrder &order)
         ->default_str("centroid");
 }
 
+CLI::Option *add_disorder_option(CLI::App &app, bool &measure)
+{
+    return app.add_flag(
+        "!--no-disorder", measure,
+        "Do not measure how far from depth order fragments arrive, and what that does to colors");
+}
+
 } // namespace kb

@@ -11,4 +11,7 @@ namespace kb
 /// --order centroid|nearest|cells
 CLI::Option *add_order_option(CLI::App &app, FaceOrder &order);
 
+/// --no-disorder
+CLI::Option *add_disorder_option(CLI::App &app, bool &measure);
+
 } // namespace kb

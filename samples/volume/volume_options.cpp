@@ -63,9 +63,7 @@ void declare_options(CLI::App &app, VolumeOptions &options)
         ->check(CLI::IsMember({"longest", "thinnest"}))
         ->type_name("NAME")
         ->default_str("longest");
-    app.add_flag(
-        "!--no-disorder", options.measure_disorder,
-        "Do not measure how far from depth order fragments arrive, and what that does to colors");
+    add_disorder_option(app, options.measure_disorder);
     add_background_option(app, options.background);
     add_context_option(app, options.context);
     add_size_option(app, options.size);

@@ -33,20 +33,6 @@ double whole(const VolumeReport::Frame &frame)
     return frame.sort + frame.draw;
 }
 
-void print_disorder(const VolumeOptions &options, const DisorderReport &report)
-{
-    const Disorder &fragments = report.fragments;
-    fmt::print("disorder: up to {} place{} late of {} fragments, {} pixels",
-               fragments.displacement(), fragments.displacement() == 1 ? "" : "s",
-               fragments.deepest(), fragments.pixels());
-    if (report.colors)
-        fmt::print("; {:.4g} % of them out of order with k = {}, colors off by {:.2g} at most "
-                   "(RMS {:.2g}), by more than 1/255 in {:.4g} %",
-                   100.0 * fragments.share_wrong(options.k), options.k, report.colors->max,
-                   report.colors->rmse, 100.0 * report.colors->share);
-    fmt::print("\n");
-}
-
 json to_json(const DisorderReport &report, int k)
 {
     json document{{"displacement", report.fragments.displacement()},
@@ -81,8 +67,7 @@ void print_report(const VolumeOptions &options, const VolumeScene &scene,
                   const VolumeReport &report)
 {
     if (options.scene.repair)
-        fmt::print("repaired: {} cells without volume left out, {} turned\n",
-                   scene.repairs.left_out, scene.repairs.turned);
+        fmt::print("{}\n", describe(scene.repairs));
     const Spread frame = spread(report, whole);
     const Spread sort = spread(report, [](const VolumeReport::Frame &f) { return f.sort; });
     fmt::print("volume {} k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times; sorting "
@@ -92,7 +77,7 @@ void print_report(const VolumeOptions &options, const VolumeScene &scene,
                sort.median, report.passes, report.passes == 1 ? "" : "es", report.drawn,
                report.faces, report.bytes_per_pixel);
     if (report.disorder)
-        print_disorder(options, *report.disorder);
+        fmt::print("{}\n", describe(*report.disorder, options.k));
 }
 
 Status write_report(const std::filesystem::path &path, const VolumeOptions &options,

@@ -39,20 +39,20 @@ protected:
             ADD_FAILURE() << stream.error().message;
             return ImageRgbaF(size.width, size.height);
         }
-        IsosurfaceSettings settings;
-        settings.k = k;
-        settings.medium = (*stream)->medium();
-        settings.gap = gap;
-        settings.shading.size = size;
-        auto renderer = IsosurfaceRenderer::make(gl(), settings);
+        settings_.k = k;
+        settings_.medium = (*stream)->medium();
+        settings_.gap = gap;
+        settings_.shading.size = size;
+        auto renderer = IsosurfaceRenderer::make(gl(), settings_);
         if (!renderer) {
             ADD_FAILURE() << renderer.error().message;
             return ImageRgbaF(size.width, size.height);
         }
-        std::vector<IsoValue> isos;
+        iso_values_.clear();
         for (const float value : values)
-            isos.push_back({value, glm::vec3(1.0F), 0.0F});
-        EXPECT_TRUE(renderer->set_iso_values(normalized(isos, range)));
+            iso_values_.push_back({value, glm::vec3(1.0F), 0.0F});
+        iso_values_ = normalized(iso_values_, range);
+        EXPECT_TRUE(renderer->set_iso_values(iso_values_));
         (*stream)->sort(camera_, size);
         renderer->capture(**stream, camera_);
         renderer->shade(camera_);
@@ -62,7 +62,11 @@ protected:
     }
 
     OrbitCamera camera_{.azimuth = 30.0F, .elevation = 20.0F};
-    ImageRgbaF picture_; ///< Of the last draw_stream, shaded in white on white.
+
+    // Of the last draw_stream:
+    IsosurfaceSettings settings_;
+    std::vector<IsoValue> iso_values_;
+    ImageRgbaF picture_; ///< Shaded in white on white.
 
 private:
     std::unique_ptr<Context> context_;

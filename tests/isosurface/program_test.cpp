@@ -35,7 +35,7 @@ public:
 
     void sort(const OrbitCamera &, Size) override {}
 
-    void draw(const OrbitCamera &, Size) override
+    void draw(const OrbitCamera &, Size) const override
     {
         program_.use();
         for (const Fragment &fragment : fragments_) {
@@ -43,6 +43,11 @@ public:
                                   fragment.tagged_scalar, 0.0F, 0.0F);
             draw_full_screen(empty_.gl(), empty_);
         }
+    }
+
+    Result<Disorder> capture_disorder(const OrbitCamera &, Size) const override
+    {
+        return Error{"it draws one fragment by each command"};
     }
 
     Medium medium() const override { return medium_; }

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include "disorder_report.hpp"
+#include "isosurface_renderer.hpp"
+
+#include <span>
+
+namespace kb
+{
+
+/// How far from depth order the fragments of a stream come, and what that did to the colors of a
+/// picture of its surfaces. The stream is sorted for the camera. The exact picture is that of a
+/// k-buffer large enough for all fragments to leave it in order: see SequenceMeter.
+Result<DisorderReport> measure_disorder(const Gl &gl, const IsosurfaceSettings &settings,
+                                        const FragmentStream &stream, const OrbitCamera &camera,
+                                        std::span<const IsoValue> values,
+                                        const ImageRgbaF &picture);
+
+} // namespace kb

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include "disorder_report.hpp"
+#include "sorted_faces.hpp"
+#include "volume_options.hpp"
+#include "volume_scene.hpp"
+
+namespace kb
+{
+
+/// `faces` made the picture as they are sorted; they may be the scene's own ones or pieces of them.
+/// Its colors are compared with the exact picture of the scene's own faces, unless it is exact
+/// itself.
+Result<DisorderReport> measure_disorder(const Gl &gl, const VolumeOptions &options,
+                                        const VolumeScene &scene, const SortedFaces &faces,
+                                        const ImageRgbaF &picture);
+
+} // namespace kb
