@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// A point has the depth of its center all over: sorted by depth, points come in order.
+// A point has the depth of its center all over: sorted by depth, points come in order. The scalar
+// is that of the center and what the field's gradient there adds.
 
 #include "fragment_stream.hpp"
 
 #include "disorder_capture.hpp"
+#include "gradients.hpp"
 #include "radix_sort.hpp"
 
 #include <glm/gtc/type_ptr.hpp>
+
+#include <cstddef>
 
 namespace kb
 {
@@ -16,33 +20,45 @@ namespace
 {
 
 /// A square of the size s at the depth w is s * projection[1][1] / w halves of the picture high.
+/// The scalar at the place p of the square is value + gradient . (p - center), p = (slopes * w,
+/// -w).
 constexpr const char *vertex_shader = R"(#version 330
 layout(location = 0) in vec3 position;
 layout(location = 1) in float value;
+layout(location = 2) in vec3 gradient;
 uniform mat4 view;
 uniform mat4 projection;
 uniform float size; // Of a point at depth 1, in pixels.
-flat out float scalar;
+flat out vec3 scalar; // At the slopes 0, and how much it grows with them.
 
 void main()
 {
-    gl_Position = projection * (view * vec4(position, 1.0));
+    vec4 center = view * vec4(position, 1.0);
+    gl_Position = projection * center;
     gl_PointSize = size / gl_Position.w;
-    scalar = value;
+    vec2 across = (mat3(view) * gradient).xy;
+    scalar = vec3(value - dot(across, center.xy), across * -center.z);
 }
 )";
 
 constexpr const char *fragment_shader = R"(#version 330
 uniform vec4 view_size; // Width, height, slopes of the rays at the right and the upper edge.
-flat in float scalar;
+flat in vec3 scalar;
 layout(location = 0) out vec4 fragment;
 
 void main()
 {
     vec2 xy = (2.0 * gl_FragCoord.xy / view_size.xy - 1.0) * view_size.zw;
-    fragment = vec4(sqrt(1.0 + dot(xy, xy)) / gl_FragCoord.w, scalar, 0.0, 0.0);
+    fragment = vec4(sqrt(1.0 + dot(xy, xy)) / gl_FragCoord.w, scalar.x + dot(scalar.yz, xy), 0.0, 0.0);
 }
 )";
+
+/// As the shader reads it. The scalar is from 0 to 1 over its range.
+struct Vertex {
+    glm::vec3 position;
+    float value;
+    glm::vec3 gradient;
+};
 
 class ParticleStream final : public FragmentStream
 {
@@ -52,19 +68,27 @@ public:
         : gl_(gl), program_(std::move(program)), array_(gl), vertices_(gl), order_buffer_(gl),
           points_(points.begin(), points.end()), point_size_(point_size)
     {
-        std::vector<glm::vec4> vertices;
+        std::vector<float> values;
+        values.reserve(scalars.size());
+        for (const float scalar : scalars)
+            values.push_back((scalar - range.low) / (range.high - range.low));
+        const std::vector<glm::vec3> gradients = estimate_gradients(points, values);
+        std::vector<Vertex> vertices;
         vertices.reserve(points.size());
         for (std::size_t i = 0; i < points.size(); ++i)
-            vertices.emplace_back(points[i], (scalars[i] - range.low) / (range.high - range.low));
+            vertices.push_back({points[i], values[i], gradients[i]});
         gl.BindVertexArray(array_.id());
         gl.BindBuffer(GL_ARRAY_BUFFER, vertices_.id());
-        gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(glm::vec4)),
+        gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
                       vertices.data(), GL_STATIC_DRAW);
-        gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(glm::vec4), nullptr);
-        gl.VertexAttribPointer(1, 1, GL_FLOAT, GL_FALSE, sizeof(glm::vec4),
-                               reinterpret_cast<const void *>(sizeof(glm::vec3)));
-        gl.EnableVertexAttribArray(0);
-        gl.EnableVertexAttribArray(1);
+        const auto add_attribute = [&](GLuint index, GLint components, std::size_t offset) {
+            gl.VertexAttribPointer(index, components, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                                   reinterpret_cast<const void *>(offset));
+            gl.EnableVertexAttribArray(index);
+        };
+        add_attribute(0, 3, offsetof(Vertex, position));
+        add_attribute(1, 1, offsetof(Vertex, value));
+        add_attribute(2, 3, offsetof(Vertex, gradient));
         gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, order_buffer_.id());
         gl.BindVertexArray(0);
     }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 
@@ -81,9 +82,16 @@ float mean_spacing(std::span<const glm::vec3> points)
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
-    const glm::dvec3 box(high - low);
-    return static_cast<float>(
-        std::cbrt(box.x * box.y * box.z / static_cast<double>(points.size())));
+    std::array<double, 3> box{high.x - low.x, high.y - low.y, high.z - low.z};
+    std::ranges::sort(box, std::greater());
+    // Points in a plane or in a line have neighbours only there.
+    const auto count = static_cast<double>(points.size());
+    double spacing = std::cbrt(box[0] * box[1] * box[2] / count);
+    if (spacing >= box[2])
+        spacing = std::sqrt(box[0] * box[1] / count);
+    if (spacing >= box[1])
+        spacing = box[0] / count;
+    return static_cast<float>(spacing);
 }
 
 } // namespace kb

@@ -16,7 +16,8 @@ namespace kb
 /// field "density" of a few drops that run into one another. The same on every machine.
 PointSet make_particles(std::size_t count);
 
-/// The mean distance of neighbours if the points fill their box evenly.
+/// The mean distance of neighbours if the points fill their box evenly, or the plane or line that
+/// the box is.
 float mean_spacing(std::span<const glm::vec3> points);
 
 } // namespace kb

@@ -22,6 +22,8 @@ void main()
 }
 )";
 
+/// A pixel's neighbours count in pairs, opposite to each other, so that planes stay what they are
+/// however steep; the less, the more there is of a step in depth to one of them.
 static constexpr const char *smooth_shader = R"(#version 330
 uniform sampler2D surfaces;
 uniform int axis;
@@ -34,20 +36,27 @@ void main()
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     ivec2 last = textureSize(surfaces, 0) - 1;
     surface = texelFetch(surfaces, pixel, 0).xy;
-    float sum = 0.0;
-    float weights = 0.0;
-    for (int i = -radius; i <= radius; ++i) {
-        ivec2 place = pixel + i * ivec2(1 - axis, axis);
-        if (place != clamp(place, ivec2(0), last))
-            continue;
-        vec2 other = texelFetch(surfaces, place, 0).xy;
-        if (other.y != surface.y || abs(other.x - surface.x) > depth_step * surface.x * surface.x)
-            continue;
-        float weight = 1.0 - abs(float(i)) / float(radius + 1);
-        sum += weight * other.x;
-        weights += weight;
+    if (surface.x == 0.0)
+        return;
+    float sum = surface.x;
+    float weights = 1.0;
+    float most = 2.0 * depth_step * surface.x * surface.x;
+    for (int i = 1; i <= radius; ++i) {
+        ivec2 offset = i * ivec2(1 - axis, axis);
+        ivec2 before = pixel - offset;
+        ivec2 behind = pixel + offset;
+        if (before != max(before, ivec2(0)) || behind != min(behind, last))
+            break;
+        vec2 a = texelFetch(surfaces, before, 0).xy;
+        vec2 b = texelFetch(surfaces, behind, 0).xy;
+        float even = 1.0 - abs(a.x - 2.0 * surface.x + b.x) / most;
+        if (a.y != surface.y || b.y != surface.y || even <= 0.0)
+            break;
+        float weight = even * (1.0 - float(i) / float(radius + 1));
+        sum += weight * (a.x + b.x);
+        weights += 2.0 * weight;
     }
-    surface.x = sum / weights; // The pixel itself counts in any case.
+    surface.x = sum / weights;
 }
 )";
 

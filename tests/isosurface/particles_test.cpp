@@ -78,14 +78,22 @@ TEST_F(ParticlesTest, OfTheDistanceFieldAreASphere)
     const ImageRgbaF drawn = draw(set.points, distances, static_cast<float>(side),
                                   static_cast<float>(2.5 * diagonal), radius, 2);
 
-    // A particle is up to half the diagonal of its square, and a pixel for the rasterizer, away
-    // from the ray: so much its scalar may be wrong for the place on the ray. Between two of them
-    // the distance is convex: linear interpolation adds up to length^2 / 8 times its second
-    // derivative, which is 1 / distance.
-    const double pixel = 2.0 * std::tan(22.5 / 180.0 * 3.14159265) / 170.0 * 3.7;
+    // The second derivative of the distance is 1 / distance. A particle's scalar is continued by a
+    // gradient over half the diagonal of its square, which neglects `curvature` at most. The
+    // gradient is that of points in a box of 3 x 3 x 3 cubes of side `spacing`: there the distance
+    // differs from its tangent by 0 to q = R^2 / 2 of the second derivative, R being half the box's
+    // diagonal, which has a deviation of q / 2 at most. Least squares make of it a gradient of no
+    // more than q / 2 / (the points' deviation), and that is 0.87 spacings for an even box; 0.6 is
+    // for an uneven one. Between two particles linear interpolation adds length^2 / 8 times the
+    // second derivative.
+    const double spacing = mean_spacing(set.points);
+    const double bend = 1.0 / (radius - side);
+    const double reach = side / std::sqrt(2.0);
+    const double curvature = reach * reach / 2.0 * bend;
+    const double q = std::pow(1.5 * spacing, 2.0) * 3.0 / 2.0 * bend;
     const double bound =
-        side / std::sqrt(2.0) + pixel + std::pow(2.0 * diagonal, 2.0) / 8.0 / (radius - side);
-    ASSERT_LT(bound, 0.2);
+        curvature + q / 2.0 / (0.6 * spacing) * reach + std::pow(2.0 * diagonal, 2.0) / 8.0 * bend;
+    ASSERT_LT(bound, reach / 3.0) << "without gradients it would be `reach`";
     int surfaces = 0;
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {
@@ -128,6 +136,23 @@ TEST(GeneratedParticles, FillTheUnitBall)
         EXPECT_NEAR(mean_spacing(set.points), expected, 0.2 * expected);
     }
     EXPECT_EQ(make_particles(1'000).points, make_particles(1'000).points);
+}
+
+TEST(MeanSpacing, IsOfBoxesPlanesAndLines)
+{
+    const auto spacing = [](int x_count, int y_count, int z_count) {
+        std::vector<glm::vec3> points;
+        for (int x = 0; x < x_count; ++x)
+            for (int y = 0; y < y_count; ++y)
+                for (int z = 0; z < z_count; ++z)
+                    points.emplace_back(z, x, y);
+        return mean_spacing(points);
+    };
+    // n points are n - 1 spaces.
+    EXPECT_NEAR(spacing(40, 40, 40), 39.0F / 40.0F, 1e-5F);
+    EXPECT_NEAR(spacing(40, 40, 1), 39.0F / 40.0F, 1e-5F);
+    EXPECT_NEAR(spacing(1, 40, 1), 39.0F / 40.0F, 1e-5F);
+    EXPECT_EQ(spacing(1, 1, 1), 0.0F);
 }
 
 } // namespace

@@ -287,6 +287,23 @@ TEST_F(SurfacesTest, AreLitAsTheirNormalsSay)
     EXPECT_GT(edge, 100);
 }
 
+TEST_F(SurfacesTest, StayPlanesWhenDepthsAreMadeSmooth)
+{
+    // Steep, and it ends within the picture.
+    const glm::vec3 normal = glm::normalize(glm::vec3(0.9F, 0.2F, 0.1F));
+    const TestGrid scene = make_test_grid({.cubes = 4, .jitter = 0.0F, .sliver_share = 0.0F},
+                                          [normal](glm::vec3 p) { return glm::dot(normal, p); });
+    draw(scene, {0.1F});
+    const ImageRgbaF plain = picture_;
+    settings_.shading.smoothing = 9;
+    draw(scene, {0.1F});
+    // As above: twice what rounding makes of a cosine.
+    for (std::size_t i = 0; i < plain.pixels.size(); ++i)
+        ASSERT_NEAR(picture_.pixels[i].r, plain.pixels[i].r, 1e-3) << i;
+    EXPECT_GT(std::ranges::count_if(plain.pixels, [](const glm::vec4 &p) { return p.r < 1.0F; }),
+              1000);
+}
+
 } // namespace
 
 } // namespace kb::test
