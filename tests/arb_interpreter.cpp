@@ -131,8 +131,8 @@ ArbInterpreter::Operand ArbInterpreter::parse_operand(std::string text,
 ArbInterpreter::Instruction ArbInterpreter::parse_instruction(const std::string &statement) const
 {
     static const std::map<std::string, std::size_t> source_counts{
-        {"MOV", 1}, {"PK4UB", 1}, {"SLT", 2}, {"SUB", 2},
-        {"MIN", 2}, {"MAX", 2},   {"CMP", 3}, {"KIL", 1},
+        {"MOV", 1}, {"PK4UB", 1}, {"RCP", 1}, {"SLT", 2}, {"SUB", 2}, {"MUL", 2},
+        {"MIN", 2}, {"MAX", 2},   {"CMP", 3}, {"MAD", 3}, {"KIL", 1},
     };
     Instruction instruction;
     instruction.opcode = statement.substr(0, statement.find(' '));
@@ -218,6 +218,12 @@ bool ArbInterpreter::run(const Fragment &fragment, std::vector<glm::vec4> &kbuff
                 value[c] = s[0][c] < s[1][c] ? 1.0F : 0.0F;
             else if (instruction.opcode == "SUB")
                 value[c] = s[0][c] - s[1][c];
+            else if (instruction.opcode == "MUL")
+                value[c] = s[0][c] * s[1][c];
+            else if (instruction.opcode == "MAD")
+                value[c] = s[0][c] * s[1][c] + s[2][c];
+            else if (instruction.opcode == "RCP")
+                value[c] = 1.0F / s[0][c];
             else if (instruction.opcode == "MIN")
                 value[c] = std::min(s[0][c], s[1][c]);
             else if (instruction.opcode == "MAX")

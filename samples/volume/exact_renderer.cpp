@@ -26,7 +26,7 @@ layout(location = 0) out vec2 fragment;
 
 void main()
 {
-    fragment = vec2(ray_distance(), tagged_scalar());
+    fragment = vec2(ray_distance(), coded_scalar());
 }
 )";
 
@@ -81,8 +81,8 @@ public:
                   Program add, Program finish)
         : gl_(gl), size_(settings.size), peeling_(std::move(peeling)), faces_(std::move(faces)),
           add_(std::move(add)), finish_(std::move(finish)),
-          table_(gl, PreintegratedTable(settings.transfer, table_size), GL_LINEAR),
-          sums_{Sum(gl, size_), Sum(gl, size_)},
+          table_(gl, PreintegratedTable(settings.transfer, table_size)), sums_{Sum(gl, size_),
+                                                                               Sum(gl, size_)},
           picture_(make_texture_2d(gl, GL_RGBA32F, size_.width, size_.height)), framebuffer_(gl),
           empty_(gl)
     {
@@ -130,7 +130,7 @@ public:
     int bytes_per_pixel() const override { return peeling_.bytes_per_pixel() + 4 * 16; }
 
 private:
-    /// Entries 0 and 1 of volume_program.hpp.
+    /// Entries 0 and 1 of volume_program.hpp. Depths are distances along the ray: its length is 1.
     struct Sum {
         Sum(const Gl &gl, Size size)
             : color(make_texture_2d(gl, GL_RGBA32F, size.width, size.height)),
@@ -151,7 +151,7 @@ private:
             gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
             const std::array<float, 4> zero{};
             gl.ClearBufferfv(GL_COLOR, 0, zero.data());
-            gl.ClearBufferfv(GL_COLOR, 1, zero.data());
+            gl.ClearBufferfv(GL_COLOR, 1, std::array{0.0F, 0.0F, 0.0F, 1.0F}.data());
         }
 
         Texture color;
@@ -229,7 +229,8 @@ Result<std::unique_ptr<VolumeRenderer>> make_exact_renderer(const Gl &gl,
         return faces.error();
     auto add = Program::make(gl, full_screen_vertex_shader,
                              fmt::format("#version 330\n#define LAYERS {}\n", settings.k) +
-                                 make_volume_shader(table_size, cuts) + add_shader);
+                                 SegmentTextures::shader(table_size) + make_volume_shader(cuts) +
+                                 add_shader);
     if (!add)
         return add.error();
     auto finish = Program::make(gl, full_screen_vertex_shader, finish_shader);

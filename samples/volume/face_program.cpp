@@ -2,54 +2,86 @@
 
 #include "face_program.hpp"
 
-#include "sorted_faces.hpp"
-
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
 
 namespace kb
 {
 
-static constexpr const char *vertex_shader = R"(#version 330
+const char *const ray_length_shader = R"(
+uniform vec4 window_to_ray; // Scale and offset of x and y, to the plane at distance 1.
+
+float ray_length()
+{
+    vec2 ray = gl_FragCoord.xy * window_to_ray.xy + window_to_ray.zw;
+    return sqrt(1.0 + dot(ray, ray));
+}
+)";
+
+/// What the fragment shader does not read the linker leaves out.
+static constexpr const char *vertex_shader = R"(
 layout(location = 0) in vec4 position_and_scalar;
 uniform mat4 view_projection;
 invariant gl_Position;
 out float scalar;
+out float code;
 
 void main()
 {
     gl_Position = view_projection * vec4(position_and_scalar.xyz, 1.0);
     scalar = position_and_scalar.w;
+    code = position_and_scalar.w * scale + offset;
 }
 )";
 
-static constexpr const char *fragment_shader_start = R"(#version 330
+static constexpr const char *fragment_shader_start = R"(
 in float scalar;
-uniform vec4 window_to_ray; // Scale and offset of x and y, to the plane at distance 1.
+in float code;
+
+float eye_depth()
+{
+    return 1.0 / gl_FragCoord.w;
+}
 
 float ray_distance()
 {
-    vec2 ray = gl_FragCoord.xy * window_to_ray.xy + window_to_ray.zw;
-    return sqrt(1.0 + dot(ray, ray)) * (1.0 / gl_FragCoord.w);
+    return ray_length() * eye_depth();
+}
+
+float tagged_scalar()
+{
+    return gl_FrontFacing || scalar < 0.5 * tag ? scalar : scalar - 2.0 * tag;
+}
+
+float coded_scalar()
+{
+    return gl_FrontFacing || code < 1.0 ? code : code - 2.0;
 }
 )";
 
 Result<Program> make_face_program(const Gl &gl, const std::string &fragment_shader)
 {
-    constexpr float tag = SortedFaces::boundary_tag;
-    const std::string tagged =
-        fmt::format("\nfloat tagged_scalar()\n{{\n    return gl_FrontFacing || scalar < {:.1f} ? "
-                    "scalar : scalar - {:.1f};\n}}\n",
-                    tag / 2.0F, 2.0F * tag);
-    return Program::make(gl, vertex_shader, fragment_shader_start + tagged + fragment_shader);
+    const std::string start =
+        fmt::format("#version 330\n"
+                    "const float tag = {:.1f};\n"
+                    "const float scale = {:.9e};\n"
+                    "const float offset = {:.9e};\n",
+                    SortedFaces::boundary_tag, CodedScalar::scale, CodedScalar::offset);
+    return Program::make(gl, start + vertex_shader,
+                         start + ray_length_shader + fragment_shader_start + fragment_shader);
 }
 
 void use_face_program(const Gl &gl, const Program &program, const OrbitCamera &camera, Size size)
 {
     program.use();
-    const glm::mat4 projection = camera.projection(size);
-    const glm::mat4 matrix = projection * camera.view();
+    const glm::mat4 matrix = camera.projection(size) * camera.view();
     gl.UniformMatrix4fv(program.uniform("view_projection"), 1, GL_FALSE, glm::value_ptr(matrix));
+    set_rays(gl, program, camera, size);
+}
+
+void set_rays(const Gl &gl, const Program &program, const OrbitCamera &camera, Size size)
+{
+    const glm::mat4 projection = camera.projection(size);
     const float across = 1.0F / projection[0][0];
     const float up = 1.0F / projection[1][1];
     gl.Uniform4f(program.uniform("window_to_ray"), 2.0F * across / static_cast<float>(size.width),

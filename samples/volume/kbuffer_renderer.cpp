@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-//     clear   all entries are 0
+//     clear   a pass over all pixels: all entries are 0, but the length of the pixel's ray
 //     draw    the faces, once: the program composites what has left those that wait
 //     flush   a pass over all pixels: the k that still wait, in order
 
@@ -30,7 +30,16 @@ layout(location = 0) out vec4 fragment;
 
 void main()
 {
-    fragment = vec4(ray_distance(), tagged_scalar(), 0.0, 0.0);
+    fragment = vec4(eye_depth(), coded_scalar(), 0.0, 0.0);
+}
+)";
+
+constexpr const char *ray_shader = R"(
+layout(location = 0) out vec4 fragment;
+
+void main()
+{
+    fragment = vec4(ray_length());
 }
 )";
 
@@ -82,7 +91,8 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k)
         text += fmt::format("uniform sampler2DArray attachment{};\n", a);
     text += "uniform vec3 background;\n"
             "layout(location = 0) out vec4 result;\n";
-    text += make_volume_shader(table_size, 0);
+    text += PackedSegmentTexture::shader(table_size);
+    text += make_volume_shader(0);
     text += order_function;
     text += "void main()\n{\n"
             "    ivec2 pixel = ivec2(gl_FragCoord.xy);\n";
@@ -101,18 +111,19 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k)
 class KBufferRenderer final : public VolumeRenderer
 {
 public:
-    KBufferRenderer(const Gl &gl, const VolumeSettings &settings, KBuffer kbuffer, Program faces,
-                    ArbProgram program, Program flush, const PreintegratedTable &table)
-        : gl_(gl), size_(settings.size), kbuffer_(std::move(kbuffer)), faces_(std::move(faces)),
-          program_(std::move(program)), flush_(std::move(flush)), table_(gl, table, GL_NEAREST),
+    KBufferRenderer(const Gl &gl, const VolumeSettings &settings, KBuffer kbuffer, Program rays,
+                    ArbProgram clear, Program faces, ArbProgram program, Program flush,
+                    const PreintegratedTable &table)
+        : gl_(gl), size_(settings.size), kbuffer_(std::move(kbuffer)), rays_(std::move(rays)),
+          clear_(std::move(clear)), faces_(std::move(faces)), program_(std::move(program)),
+          flush_(std::move(flush)), table_(gl, table),
           picture_(make_texture_2d(gl, GL_RGBA32F, size_.width, size_.height)), framebuffer_(gl),
           empty_(gl)
     {
         flush_.use();
         for (int a = 0; a < kbuffer_.attachments(); ++a)
             gl.Uniform1i(flush_.uniform(fmt::format("attachment{}", a).c_str()), a);
-        gl.Uniform1i(flush_.uniform("thin"), table_unit);
-        gl.Uniform1i(flush_.uniform("fading"), table_unit + 1);
+        gl.Uniform1i(flush_.uniform("segments"), table_unit);
         gl.Uniform3f(flush_.uniform("background"), settings.background.r, settings.background.g,
                      settings.background.b);
         gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
@@ -122,12 +133,16 @@ public:
 
     Status draw(const SortedFaces &faces, const OrbitCamera &camera) override
     {
-        kbuffer_.clear(glm::vec4(0.0F));
+        kbuffer_.bind();
         gl_.Disable(GL_DEPTH_TEST);
+        gl_.Enable(GL_KBUFFER_PROGRAM_MESA);
+        clear_.bind();
+        rays_.use();
+        set_rays(gl_, rays_, camera, size_);
+        draw_full_screen(gl_, empty_);
         table_.bind(0);
         program_.bind();
         use_face_program(gl_, faces_, camera, size_);
-        gl_.Enable(GL_KBUFFER_PROGRAM_MESA);
         faces.draw();
         gl_.Disable(GL_KBUFFER_PROGRAM_MESA);
         flush();
@@ -152,10 +167,12 @@ private:
     const Gl &gl_;
     Size size_;
     KBuffer kbuffer_;
+    Program rays_;
+    ArbProgram clear_;
     Program faces_;
     ArbProgram program_;
     Program flush_;
-    SegmentTextures table_;
+    PackedSegmentTexture table_;
     Texture picture_;
     Framebuffer framebuffer_;
     VertexArray empty_;
@@ -169,6 +186,13 @@ Result<std::unique_ptr<VolumeRenderer>> make_kbuffer_renderer(const Gl &gl,
     auto kbuffer = KBuffer::make(gl, GL_RGBA32F, settings.size, volume_entries(settings.k));
     if (!kbuffer)
         return kbuffer.error();
+    auto rays = Program::make(gl, full_screen_vertex_shader,
+                              std::string("#version 330\n") + ray_length_shader + ray_shader);
+    if (!rays)
+        return rays.error();
+    auto clear = ArbProgram::make(gl, GL_KBUFFER_PROGRAM_MESA, make_clear_program(settings.k));
+    if (!clear)
+        return clear.error();
     auto faces = make_face_program(gl, face_shader);
     if (!faces)
         return faces.error();
@@ -181,9 +205,9 @@ Result<std::unique_ptr<VolumeRenderer>> make_kbuffer_renderer(const Gl &gl,
     if (!flush)
         return flush.error();
     const PreintegratedTable table(settings.transfer, table_size);
-    auto renderer =
-        std::make_unique<KBufferRenderer>(gl, settings, std::move(*kbuffer), std::move(*faces),
-                                          std::move(*program), std::move(*flush), table);
+    auto renderer = std::make_unique<KBufferRenderer>(
+        gl, settings, std::move(*kbuffer), std::move(*rays), std::move(*clear), std::move(*faces),
+        std::move(*program), std::move(*flush), table);
     if (auto complete = check_framebuffer(gl); !complete)
         return complete.error();
     return std::unique_ptr<VolumeRenderer>(std::move(renderer));

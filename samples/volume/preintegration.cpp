@@ -15,10 +15,17 @@ namespace kb
 
 double fade(double depth)
 {
-    const auto polynomial = [depth](const std::array<double, 4> &c) {
-        return depth * (c[0] + depth * (c[1] + depth * (c[2] + depth * c[3])));
-    };
-    return polynomial(fade_numerator) / (1.0 + polynomial(fade_denominator));
+    // Where the others nearly cancel; the next term is depth^3 / 360.
+    if (depth < 1e-3)
+        return depth / 6.0;
+    return 1.0 + 2.0 / std::expm1(depth) - 2.0 / depth;
+}
+
+TablePlace::TablePlace(TableSize size)
+    : sum_scale(0.5 * (size.means - 1)), sum_offset(0.5),
+      difference_scale(0.5 * (size.differences - 1) * (1.0 + PreintegratedTable::half_difference)),
+      difference_offset(0.5 * size.differences)
+{
 }
 
 namespace
@@ -151,12 +158,17 @@ PreintegratedTable::PreintegratedTable(const TransferFunction &transfer, TableSi
         part.get();
 }
 
+double PreintegratedTable::difference(int row) const
+{
+    const double place = (2.0 * row / (size_.differences - 1) - 1.0) / (1.0 + half_difference);
+    return half_difference * place / (1.0 - std::abs(place));
+}
+
 void PreintegratedTable::fill(const TransferFunction &transfer, int first_difference,
                               int last_difference)
 {
     for (int j = first_difference; j < last_difference; ++j) {
-        const double place = (2.0 * j / (size_.differences - 1) - 1.0) / (1.0 + half_difference);
-        double difference = half_difference * place / (1.0 - std::abs(place));
+        double difference = this->difference(j);
         if (std::abs(difference) < 1e-3)
             difference = 1e-3; // For the limit of fading.
         for (int i = 0; i < size_.means; ++i) {

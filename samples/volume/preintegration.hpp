@@ -6,7 +6,6 @@
 
 #include <glm/vec4.hpp>
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -25,6 +24,17 @@ struct SegmentOptics {
 struct TableSize {
     int means;
     int differences;
+};
+
+/// From a segment to texels, of which the first has its center at 1/2: of the sum of the scalars at
+/// its ends, and of d / (|d| + half_difference).
+struct TablePlace {
+    explicit TablePlace(TableSize size);
+
+    double sum_scale;
+    double sum_offset;
+    double difference_scale;
+    double difference_offset;
 };
 
 /// The integrals over segments, by the scalars at their ends. What depends on the length does so by
@@ -54,6 +64,9 @@ public:
 
     TableSize size() const { return size_; }
 
+    /// Of the scalars, in a row of texels.
+    double difference(int row) const;
+
     /// (thin color, extinction), and ((thick color - thin color) / difference, 0), which is as good
     /// as constant where colors are linear; means first. What no segment can be, as one of its ends
     /// is beyond 0 or 1, is such that interpolation is right beside it.
@@ -68,12 +81,7 @@ private:
     std::vector<glm::vec4> fading_;
 };
 
-/// coth(D / 2) - 2 / D: from D / 6 to 1. A rational function that is within 4e-5 of that, the
-/// coefficients of which are those of D, D^2, D^3, D^4 (and 1 of D^0 in the denominator).
-inline constexpr std::array<double, 4> fade_numerator{0.16625139, 0.04071798, 0.00581424,
-                                                      0.00143069};
-inline constexpr std::array<double, 4> fade_denominator{0.23621826, 0.05995918, 0.00864971,
-                                                        0.00143074};
+/// coth(D / 2) - 2 / D: from D / 6 to 1.
 double fade(double depth);
 
 /// The integral itself, with steps that are ever so fine: what the table holds.
