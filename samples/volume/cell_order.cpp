@@ -34,7 +34,7 @@ CellOrder::CellOrder(const FaceMesh &mesh) : interior_count_(mesh.interior_count
         faces_[next[pair.x]++] = {face, pair.y, Seen::counterclockwise};
         if (pair.y != FaceMesh::no_cell)
             faces_[next[pair.y]++] = {face, pair.x, Seen::clockwise};
-        if (face >= interior_count_)
+        if (pair.y == FaceMesh::no_cell)
             boundary_cells_.push_back(pair.x);
     }
 }

@@ -67,7 +67,7 @@ FaceMesh make_face_mesh(const TetGrid &grid, const ScalarField &field)
     std::vector<CellFace> faces = faces_of_cells(grid);
     std::sort(faces.begin(), faces.end());
 
-    FaceMesh mesh{grid.points, field.values, {}, 0, {}};
+    FaceMesh mesh{grid.points, field.values, {}, 0, 0, {}};
     std::vector<CellFace> boundary;
     for (auto first = faces.begin(); first != faces.end();) {
         const auto last = std::find_if(

@@ -20,12 +20,16 @@ struct FaceMesh {
     std::vector<glm::vec3> positions;
     std::vector<float> scalars; ///< One a position.
     std::vector<glm::uvec3> triangles;
-    /// The first ones are shared by two cells; the others belong to one cell and are the boundary,
-    /// counterclockwise seen from outside.
+    /// The first ones are shared by two cells. Those that follow belong to one cell and are the
+    /// boundary, counterclockwise seen from outside.
     std::size_t interior_count = 0;
+    /// The last ones are within clusters of cells: shared by two cells, too, but not drawn.
+    std::size_t inner_count = 0;
     /// For each triangle the cell from whose outside it is counterclockwise, and the one beyond it.
     std::vector<glm::uvec2> cells;
     static constexpr std::uint32_t no_cell = std::numeric_limits<std::uint32_t>::max();
+
+    std::size_t drawn_count() const { return triangles.size() - inner_count; }
 };
 
 /// Cells without volume add no faces. Of the faces with the same three points, two that are seen

@@ -4,10 +4,12 @@
 // front to back; a k-buffer program puts the fragments of every pixel in order and composites the
 // segments of its ray, by a table of the integrals over them.
 //
+//     join    cluster_cells, once: the faces that matter
 //     sort    SortedFaces: the faces by centroid, in linear time
 //     draw    make_volume_program: two nearest fragments, table lookup, composition
 //     flush   the fragments that still wait
 
+#include "cell_clusters.hpp"
 #include "context.hpp"
 #include "kbuffer.hpp"
 #include "output.hpp"
@@ -43,6 +45,23 @@ make_renderer(const kb::Gl &gl, const kb::VolumeOptions &options, const kb::Volu
     return kb::make_kbuffer_renderer(gl, settings);
 }
 
+/// What is drawn of the faces, in pieces if that is wanted.
+kb::FaceMesh choose_faces(const kb::Gl &gl, const kb::VolumeOptions &options,
+                          const kb::VolumeScene &scene, kb::VolumeReport &report)
+{
+    kb::FaceMesh faces = scene.faces;
+    if (!options.all_faces)
+        report.cluster_time = kb::milliseconds(gl, [&] {
+            const kb::CellClusters clusters =
+                kb::cluster_cells(scene.grid, scene.faces, scene.range,
+                                  kb::ColorTolerance(scene.transfer, options.tolerance));
+            faces = kb::mark_inner_faces(scene.faces, clusters);
+            report.clusters = clusters.count;
+            report.inner_faces = faces.inner_count;
+        });
+    return options.budget > 1.0 ? kb::subdivide(faces, options.budget, options.split_first) : faces;
+}
+
 std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &scene)
 {
     const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
@@ -54,13 +73,9 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
     auto renderer = make_renderer(gl, options, scene);
     if (!renderer)
         return lacking(renderer.error());
-    kb::SortedFaces faces(gl,
-                          options.budget > 1.0
-                              ? kb::subdivide(scene.faces, options.budget, options.split_first)
-                              : scene.faces,
-                          scene.range, options.order);
-
     kb::VolumeReport report;
+    kb::SortedFaces faces(gl, choose_faces(gl, options, scene, report), scene.range, options.order);
+
     const auto draw = [&]() -> kb::Status {
         kb::Status drawn = kb::ok;
         const double sort =

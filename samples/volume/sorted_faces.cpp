@@ -106,7 +106,8 @@ ScalarRange range_of(std::span<const float> values)
 
 SortedFaces::SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range, FaceOrder order)
     : gl_(&gl), range_(range), array_(gl), vertex_buffer_(gl), index_buffer_(gl),
-      triangles_(mesh.triangles), interior_count_(mesh.interior_count), order_by_(order)
+      triangles_(mesh.triangles), interior_count_(mesh.interior_count),
+      drawn_count_(mesh.drawn_count()), order_by_(order)
 {
     if (order == FaceOrder::cells) {
         cell_order_.emplace(mesh);
@@ -119,7 +120,7 @@ SortedFaces::SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range, 
     // A boundary vertex is another one than that of the interior at the same place.
     constexpr auto none = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> boundary_vertices(vertices_.size(), none);
-    for (auto i = mesh.interior_count; i < triangles_.size(); ++i) {
+    for (auto i = mesh.interior_count; i < drawn_count_; ++i) {
         for (int corner = 0; corner < 3; ++corner) {
             std::uint32_t &vertex = triangles_[i][corner];
             std::uint32_t &copy = boundary_vertices[vertex];
@@ -133,9 +134,11 @@ SortedFaces::SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range, 
 
     const auto processors =
         static_cast<std::size_t>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U));
+    // Inner faces are not drawn, but cells are in order by them.
+    const std::size_t looked_at = cell_order_ ? triangles_.size() : drawn_count_;
     for (std::size_t i = 0; i < processors; ++i)
-        chosen_.push_back({static_cast<std::uint32_t>(triangles_.size() * i / processors),
-                           static_cast<std::uint32_t>(triangles_.size() * (i + 1) / processors),
+        chosen_.push_back({static_cast<std::uint32_t>(looked_at * i / processors),
+                           static_cast<std::uint32_t>(looked_at * (i + 1) / processors),
                            {},
                            {}});
 
@@ -208,7 +211,8 @@ void SortedFaces::choose(Chosen &chosen, glm::vec3 eye, Size size)
         const Seen seen = see(triangles_[i], eye, size);
         if (cell_order_)
             seen_[i] = seen;
-        if (cell_order_ ? i >= interior_count_ && seen == Seen::clockwise : seen != Seen::never) {
+        const bool boundary = i >= interior_count_ && i < drawn_count_;
+        if (cell_order_ ? boundary && seen == Seen::clockwise : seen != Seen::never) {
             chosen.faces.push_back(i);
             chosen.keys.push_back(key_of(triangles_[i]));
         }
@@ -236,6 +240,7 @@ void SortedFaces::sort(const OrbitCamera &camera, Size size)
     if (cell_order_) {
         keyed_.swap(order_);
         cell_order_->sort(seen_, keyed_, order_);
+        std::erase_if(order_, [this](std::uint32_t place) { return place >= drawn_count_; });
     }
 
     std::vector<glm::uvec3> sorted(order_.size());

@@ -42,7 +42,8 @@ public:
     /// Draws the faces in the order of the last sort, by one command.
     void draw() const;
 
-    std::size_t count() const { return triangles_.size(); }
+    /// Of the faces that are drawn, if they can be seen.
+    std::size_t count() const { return drawn_count_; }
     ScalarRange range() const { return range_; }
 
     /// What is drawn, in this order: places in the mesh's triangles.
@@ -78,6 +79,7 @@ private:
     std::vector<glm::vec4> vertices_; ///< Those of the interior, then those of the boundary.
     std::vector<glm::uvec3> triangles_;
     std::size_t interior_count_;
+    std::size_t drawn_count_;
     FaceOrder order_by_;
     std::optional<CellOrder> cell_order_; ///< If the order is by cells.
     std::vector<Projected> projected_;

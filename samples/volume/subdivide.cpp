@@ -63,7 +63,7 @@ class Subdivision
 public:
     Subdivision(const FaceMesh &mesh, SplitFirst first) : mesh_(mesh), first_(first)
     {
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (std::size_t i = 0; i < mesh.drawn_count(); ++i)
             add({mesh.triangles[i], i});
     }
 
@@ -96,6 +96,8 @@ public:
                 return piece.face < mesh_.interior_count;
             });
         mesh_.interior_count = static_cast<std::size_t>(boundary - pieces_.begin());
+        for (std::size_t i = mesh_.drawn_count(); i < mesh_.triangles.size(); ++i)
+            pieces_.push_back({mesh_.triangles[i], i});
         const auto cells = std::exchange(mesh_.cells, {});
         mesh_.triangles.clear();
         for (const Piece &piece : pieces_) {
@@ -156,8 +158,7 @@ private:
 
 FaceMesh subdivide(const FaceMesh &mesh, double budget, SplitFirst first)
 {
-    const auto wanted =
-        static_cast<std::size_t>(budget * static_cast<double>(mesh.triangles.size()));
+    const auto wanted = static_cast<std::size_t>(budget * static_cast<double>(mesh.drawn_count()));
     Subdivision subdivision(mesh, first);
     while (subdivision.count() < wanted && subdivision.split_one())
         continue;

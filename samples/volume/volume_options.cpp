@@ -47,6 +47,16 @@ void declare_options(CLI::App &app, VolumeOptions &options)
         ->capture_default_str();
     app.add_flag("--exact", options.exact,
                  "Put every fragment in its place, in as many passes as it takes");
+    auto *all_faces =
+        app.add_flag("--all-faces", options.all_faces, "Draw the faces that change nothing, too");
+    app.add_option("--tolerance", options.tolerance,
+                   "Leave faces out as long as no color can be off by more than this for it: cells "
+                   "in which the scalar is nearly one linear function are joined. What is seen is "
+                   "far less; 0 leaves out what changes nothing")
+        ->check([](const std::string &text) { return check_number(text, 0.0, 16.0); })
+        ->excludes(all_faces)
+        ->type_name("X")
+        ->default_str("0");
     add_order_option(app, options.order);
     app.add_option("--budget", options.budget,
                    "Subdivide faces until there are this many times as many, for less disorder")

@@ -32,7 +32,9 @@ struct VolumeOptions {
     int k = 6;
     bool exact = false;
     FaceOrder order = FaceOrder::centroid;
-    double budget = 1.0; ///< Triangles that are drawn, as a multiple of the faces.
+    bool all_faces = false; ///< Those within clusters of cells, too.
+    double tolerance = 0.0; ///< Of colors, for clusters.
+    double budget = 1.0;    ///< Triangles that are drawn, as a multiple of the faces.
     SplitFirst split_first = SplitFirst::longest;
     bool measure_disorder = true;
     glm::vec3 background{1.0F};

@@ -68,6 +68,11 @@ void print_report(const VolumeOptions &options, const VolumeScene &scene,
 {
     if (options.scene.repair)
         fmt::print("{}\n", describe(scene.repairs));
+    if (report.clusters > 0)
+        fmt::print("joined: {} cells in {} clusters, {} faces in them are not drawn ({:.0f} ms, "
+                   "once)\n",
+                   scene.grid.cells.size(), report.clusters, report.inner_faces,
+                   report.cluster_time);
     const Spread frame = spread(report, whole);
     const Spread sort = spread(report, [](const VolumeReport::Frame &f) { return f.sort; });
     fmt::print("volume {} k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times; sorting "
@@ -106,6 +111,11 @@ Status write_report(const std::filesystem::path &path, const VolumeOptions &opti
         {"size", {options.size.width, options.size.height}},
         {"background", to_json(options.background)},
         {"k", options.k},
+        {"all_faces", options.all_faces},
+        {"tolerance", options.tolerance},
+        {"clusters", report.clusters},
+        {"inner_triangles", report.inner_faces},
+        {"ms_clusters", report.cluster_time},
         {"budget", options.budget},
         {"exact", options.exact},
         {"passes", report.passes},
