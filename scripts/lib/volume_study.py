@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Measures the sample `volume` beside VTK's mappers for unstructured grids: the same grid, view and
 transfer function, the error of each against the picture of the integrator, which draws in double
-precision and has no code in common with either. Then what the budget of triangles buys.
+precision and has no code in common with either. Then what the tolerance of colors and the budget of
+triangles buy.
 
 Needs an X server for VTK, which is run on stock Mesa. Writes OUT.json, and pictures into a folder
 of its name."""
@@ -36,8 +37,15 @@ SCENES = (
 # Name, form, options of the sample
 OURS = tuple(("kbuffer-program", order, ("--k", k, "--order", order))
              for order in ("centroid", "nearest", "cells") for k in ("6", "12"))
-OURS += (("exact", "", ("--exact", "--k", "64")),)
+OURS += tuple(("kbuffer-program", f"{order}, tolerance 0.1",
+               ("--k", k, "--order", order, "--tolerance", "0.1"))
+              for order in ("centroid", "nearest") for k in ("6", "12"))
+OURS += (("exact", "", ("--exact", "--k", "64")),
+         ("exact", "tolerance 0.1", ("--exact", "--k", "64", "--tolerance", "0.1")))
 VTK = ("vtk-projected-tetrahedra", "vtk-bunyk", "vtk-bunyk-partial", "vtk-zsweep")
+# With k = 12, so that little else is wrong
+TOLERANCES = (("--all-faces",), *(("--tolerance", value)
+              for value in ("0", "0.01", "0.03", "0.1", "0.3", "1", "3")))
 # k, order, budgets of triangles
 ACCURACY = (("6", "centroid", ("1", "1.5", "2", "4", "8")),
             ("12", "centroid", ("1", "1.5", "2", "4", "8")),
@@ -172,6 +180,20 @@ class Study:
                  f"error {row['err_rmse'] * 255:.3f}/255 (root mean square)")
         return list(rows.values())
 
+    def tolerances(self, scene):
+        """Rows of what cells that are joined save and what they cost."""
+        rows = []
+        for way in TOLERANCES[:3] if self.quick else TOLERANCES:
+            account, picture = scene.draw_ours(self.frames, "--k", "12", "--no-disorder", *way)
+            rows.append({"scene": scene.name, "tolerance": float(way[1]) if way[1:] else None,
+                         "clusters": account["clusters"], "triangles": account["triangles"],
+                         "triangles_drawn": account["triangles_drawn"],
+                         "ms_clusters": account["ms_clusters"],
+                         **errors(picture, scene.reference), **spread(account["ms"])})
+            note(f"{scene.name}: {' '.join(way)}: {rows[-1]['triangles_drawn']} triangles drawn, "
+                 f"{rows[-1]['ms_median']:.0f} ms")
+        return rows
+
     def accuracy(self, scene):
         """Rows of what more triangles cost and what they bring."""
         rows = []
@@ -219,7 +241,8 @@ def main():
     options = parser.parse_args()
     if options.quick:
         options.rounds, options.frames = 1, 2
-    document = {"machine": machine(options.size, options.rounds), "results": [], "accuracy": []}
+    document = {"machine": machine(options.size, options.rounds), "results": [],
+                "tolerances": [], "accuracy": []}
     study = Study(options)
     try:
         for name, model, arguments in SCENES[:1] if options.quick else SCENES:
@@ -228,6 +251,7 @@ def main():
             document.setdefault("scenes", {})[name] = {
                 key: scene.document[key] for key in ("field", "camera", "transfer", "triangles")}
             document["results"] += study.compare(scene)
+            document["tolerances"] += study.tolerances(scene)
             if "shells" not in name:
                 document["accuracy"] += study.accuracy(scene)
         with open(options.out + ".new", "w", encoding="utf-8") as file:

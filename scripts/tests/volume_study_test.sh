@@ -34,6 +34,11 @@ document = {"machine": {"processor": "Test & Co"}, "results": rows,
             "scenes": {name: {"field": "Density", "triangles": 1234567, "transfer": [],
                               "camera": {"azimuth": 20, "elevation": 30, "distance": 2.7}}
                        for name in ("fin, haze", "a <b>")},
+            "tolerances": [{"scene": "a <b>", "tolerance": tolerance, "clusters": 2345,
+                            "triangles": 4567, "triangles_drawn": 3456, "ms_clusters": 67.25,
+                            "ms_median": 33, "ms_p5": 32, "ms_p95": 34, "frames": 3,
+                            "err_max": 0.02, "err_rmse": 0.002, "err_share": 0}
+                           for tolerance in (None, 0.1)],
             "accuracy": [{"scene": "a <b>", "k": 6, "order": "nearest", "budget": 1.5,
                           "triangles": 7654321, "displacement": 17, "share_wrong": 0.0625, "sort_ms": 2, "ms_median": 44,
                           "ms_p5": 43, "ms_p95": 45, "frames": 3, "err_max": 0.1, "err_rmse": 0.01,
@@ -52,7 +57,8 @@ test_volume_page_shows_every_row() {
     # 120 ms against 40 ms; an error of 0.008 against 0.001; errors in steps of 1/255
     for text in "fin, haze" "a &lt;b&gt;" "kbuffer-program, cells, k = 6" "<td>3.00</td><td>8.00</td>" \
         "<td>63.75</td><td>12.50 %</td>" "<td>7,654,321</td><td>17</td><td>6.25 %</td>" \
-        "1,234,567 faces" "llvmpipe &amp; Co" "what &lt;it&gt; is" "Test &amp; Co"; do
+        "<td>25.5</td><td>2,345</td><td>4,567</td><td>3,456</td>" \
+        "all faces</td><td>–</td><td>–</td><td>4,567</td>" "1,234,567 faces" "llvmpipe &amp; Co" "what &lt;it&gt; is" "Test &amp; Co"; do
         grep -qF "$text" "$project/volume.html" || {
             echo "the page lacks: $text"
             exit 1
@@ -64,7 +70,7 @@ test_volume_page_shows_every_row() {
 test_volume_page_refuses_malformed_results() {
     local change
     for change in 'document = []' 'document["results"] = []' 'del document["scenes"]' \
-        'del rows[1]["err_rmse"]' 'del document["accuracy"]'; do
+        'del rows[1]["err_rmse"]' 'del document["accuracy"]' 'del document["tolerances"]'; do
         write_study "$change"
         run 1 "${volume_page[@]}"
         prints "volume.json: "

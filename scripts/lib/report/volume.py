@@ -35,6 +35,9 @@ that its pictures show.</li>
 <li><b>centroid</b>, <b>nearest</b>, <b>cells</b>: faces are drawn in the order of their centroids,
 of their nearest vertices, or of the cells between them, which takes longer to find and needs the
 smallest k.</li>
+<li><b>Tolerance</b>: cells in which the scalar is nearly one linear function are joined, and the
+faces between them are not drawn, as long as no color can be off by more than that, if all that is
+off were off to the same side. What is seen is the error beside it.</li>
 </ul>
 """
 
@@ -86,6 +89,26 @@ def _comparison(rows):
     return table("Errors in steps of 1/255; methods of the patched Mesa in bold.", head, lines)
 
 
+def _tolerances(rows):
+    if not rows:
+        return ""
+    head = [("tolerance", "text"), ("in steps of 1/255", ""), ("clusters of cells", ""),
+            ("faces between them", ""), ("drawn", ""), ("RMS error", ""), ("largest error", ""),
+            ("pixels off by > 1", ""), ("ms", ""), ("ms to join cells, once", "")]
+    lines = []
+    for row in rows:
+        every = row["tolerance"] is None
+        lines.append(("", ["all faces" if every else f"{row['tolerance']:g}",
+                           "–" if every else _number(row["tolerance"] * 255),
+                           "–" if every else f"{row['clusters']:,}", f"{row['triangles']:,}",
+                           f"{row['triangles_drawn']:,}", _steps(row["err_rmse"]),
+                           _steps(row["err_max"]), _percent(row["err_share"]),
+                           _number(row["ms_median"]),
+                           "–" if every else _number(row["ms_clusters"])]))
+    return table("What accuracy costs: faces are left out as long as no color can be off by more "
+                 "than the tolerance (k = 12, by centroids).", head, lines)
+
+
 def _accuracy(rows):
     if not rows:
         return ""
@@ -97,7 +120,7 @@ def _accuracy(rows):
                    _steps(row["err_max"]), _number(row["ms_median"]), _number(row["sort_ms"])])
              for row in rows]
     return table("What order costs: the faces are subdivided up to a budget of triangles, those "
-                 "first that are longest for their width. Displacement is how many places a "
+                 "first that have the longest edges. Displacement is how many places a "
                  "fragment comes too late in the sequence of its pixel, the largest of the "
                  "picture; with more than k the order is wrong there.", head, lines)
 
@@ -126,6 +149,7 @@ def _scene(study, folder, scene):
             f"{about['triangles']:,} faces, seen from azimuth {camera['azimuth']:g}°, elevation "
             f"{camera['elevation']:g}°, distance {camera['distance']:g}.</p>\n"
             + _comparison(rows)
+            + _tolerances([row for row in study["tolerances"] if row["scene"] == scene])
             + _accuracy([row for row in study["accuracy"] if row["scene"] == scene])
             + _pictures(folder, scene, rows))
 
