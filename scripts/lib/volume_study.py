@@ -200,7 +200,7 @@ class Study:
         for k, order, budgets in ACCURACY:
             for budget in budgets[:2] if self.quick else budgets:
                 account, picture = scene.draw_ours(self.frames, "--k", k, "--order", order,
-                                                   "--budget", budget)
+                                                   "--all-faces", "--budget", budget)
                 disorder = account["disorder"]
                 rows.append({"scene": scene.name, "k": int(k), "order": order,
                              "budget": float(budget), "triangles": account["triangles"],
