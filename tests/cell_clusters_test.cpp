@@ -210,7 +210,8 @@ TEST(CellClusters, FacesAreInnerIfTheirCellsAreOfOneCluster)
 {
     const Grid made(kb::make_tet_grid({.cubes = 6}), "wave");
     const CellClusters clusters = made.join(haze(), 0.2);
-    const kb::FaceMesh marked = kb::mark_inner_faces(made.faces, clusters);
+    const kb::FaceMesh marked = kb::mark_inner_faces(
+        made.faces, [&clusters](auto a, auto b) { return clusters.join(a, b); });
     EXPECT_EQ(marked.triangles.size(), made.faces.triangles.size());
     EXPECT_GT(marked.inner_count, marked.triangles.size() / 10);
     const std::size_t boundary = made.faces.triangles.size() - made.faces.interior_count;

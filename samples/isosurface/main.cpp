@@ -88,15 +88,15 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
     const kb::Gl &gl = (*context)->gl();
     if (auto supported = kb::require_kbuffer_program(gl); !supported)
         return lacking(supported.error());
-    auto stream = kb::make_stream(gl, source, point_size(options, source));
+    const auto chosen = kb::choose_iso_values(options, source.range);
+    const auto values = kb::normalized(chosen, source.range);
+    auto stream = kb::make_stream(gl, source, values, point_size(options, source));
     if (!stream)
         return lacking(stream.error());
     const kb::IsosurfaceSettings settings = settings_for(options, source);
     auto renderer = kb::IsosurfaceRenderer::make(gl, settings);
     if (!renderer)
         return lacking(renderer.error());
-    const auto chosen = kb::choose_iso_values(options, source.range);
-    const auto values = kb::normalized(chosen, source.range);
     if (auto set = renderer->set_iso_values(values); !set)
         return bad_input(set.error());
 

@@ -3,6 +3,7 @@
 #include "source.hpp"
 
 #include "particles.hpp"
+#include "surface_faces.hpp"
 #include "unit_sphere.hpp"
 
 namespace kb
@@ -29,6 +30,7 @@ static Result<Source> make_grid_source(const IsosurfaceOptions &options)
     source.range = range_of((*field)->values);
     source.order = options.order;
     source.faces = make_face_mesh(*grid, **field);
+    source.cells = std::move(grid->cells);
     return source;
 }
 
@@ -56,11 +58,13 @@ Result<Source> make_source(const IsosurfaceOptions &options)
     return options.has_particles ? make_particle_source(options) : make_grid_source(options);
 }
 
-Result<std::unique_ptr<FragmentStream>> make_stream(const Gl &gl, const Source &source,
-                                                    float point_size)
+Result<std::unique_ptr<FragmentStream>>
+make_stream(const Gl &gl, const Source &source, std::span<const IsoValue> values, float point_size)
 {
     if (source.medium == Medium::grid)
-        return make_face_stream(gl, source.faces, source.range, source.order);
+        return make_face_stream(
+            gl, mark_faces_without_surface(source.faces, source.cells, source.range, values),
+            source.range, source.order);
     return make_particle_stream(gl, source.points, source.scalars, source.range, point_size);
 }
 

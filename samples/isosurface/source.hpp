@@ -3,11 +3,14 @@
 #pragma once
 
 #include "fragment_stream.hpp"
+#include "iso_values.hpp"
 #include "options.hpp"
 
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace kb
@@ -18,6 +21,7 @@ struct Source {
     Medium medium = Medium::grid;
     GridRepairs repairs;
     FaceMesh faces;
+    std::vector<glm::uvec4> cells; ///< Of the grid.
     std::vector<glm::vec3> points;
     std::vector<float> scalars; ///< Of the points.
     ScalarRange range;
@@ -27,7 +31,8 @@ struct Source {
 /// Loads or generates it.
 Result<Source> make_source(const IsosurfaceOptions &options);
 
-Result<std::unique_ptr<FragmentStream>> make_stream(const Gl &gl, const Source &source,
-                                                    float point_size);
+/// For iso-values with their scalars. Of a grid the faces that are next to a surface.
+Result<std::unique_ptr<FragmentStream>>
+make_stream(const Gl &gl, const Source &source, std::span<const IsoValue> values, float point_size);
 
 } // namespace kb

@@ -176,24 +176,4 @@ CellClusters cluster_cells(const TetGrid &grid, const FaceMesh &mesh, ScalarRang
     return std::move(clustering).finish();
 }
 
-FaceMesh mark_inner_faces(const FaceMesh &mesh, const CellClusters &clusters)
-{
-    const auto is_inner = [&](std::size_t face) {
-        const glm::uvec2 &pair = mesh.cells[face];
-        return pair.y != no_cell && clusters.of_cells[pair.x] == clusters.of_cells[pair.y];
-    };
-    FaceMesh marked{mesh.positions, mesh.scalars, {}, 0, 0, {}};
-    for (const bool inner : {false, true}) {
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            if (is_inner(i) != inner)
-                continue;
-            marked.triangles.push_back(mesh.triangles[i]);
-            marked.cells.push_back(mesh.cells[i]);
-            marked.interior_count += i < mesh.interior_count && !inner ? 1 : 0;
-            marked.inner_count += inner ? 1 : 0;
-        }
-    }
-    return marked;
-}
-
 } // namespace kb

@@ -15,6 +15,8 @@ namespace kb
 struct CellClusters {
     std::vector<std::uint32_t> of_cells; ///< For each cell, its cluster: from 0.
     std::uint32_t count = 0;
+
+    bool join(std::uint32_t a, std::uint32_t b) const { return of_cells[a] == of_cells[b]; }
 };
 
 /// Joins cells that share faces as long as a ray's way through a cluster may be one segment, along
@@ -26,8 +28,5 @@ struct CellClusters {
 /// `mesh` has the faces of the grid; its scalars are divided by `range`.
 CellClusters cluster_cells(const TetGrid &grid, const FaceMesh &mesh, ScalarRange range,
                            const ColorTolerance &tolerance);
-
-/// The mesh with the faces between cells of the same cluster as its inner ones.
-FaceMesh mark_inner_faces(const FaceMesh &mesh, const CellClusters &clusters);
 
 } // namespace kb

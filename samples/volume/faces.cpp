@@ -91,4 +91,26 @@ FaceMesh make_face_mesh(const TetGrid &grid, const ScalarField &field)
     return mesh;
 }
 
+FaceMesh mark_inner_faces(const FaceMesh &mesh,
+                          const std::function<bool(std::uint32_t, std::uint32_t)> &look_as_one)
+{
+    FaceMesh marked{mesh.positions, mesh.scalars, {}, 0, 0, {}};
+    std::vector<std::size_t> inner;
+    const auto add = [&](std::size_t face) {
+        marked.triangles.push_back(mesh.triangles[face]);
+        marked.cells.push_back(mesh.cells[face]);
+    };
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::uvec2 &pair = mesh.cells[i];
+        if (pair.y != FaceMesh::no_cell && look_as_one(pair.x, pair.y))
+            inner.push_back(i);
+        else
+            add(i);
+    }
+    marked.interior_count = mesh.interior_count - inner.size();
+    marked.inner_count = inner.size();
+    std::ranges::for_each(inner, add);
+    return marked;
+}
+
 } // namespace kb

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -35,5 +36,10 @@ struct FaceMesh {
 /// Cells without volume add no faces. Of the faces with the same three points, two that are seen
 /// from opposite sides make one interior face; those that are left over are boundary.
 FaceMesh make_face_mesh(const TetGrid &grid, const ScalarField &field);
+
+/// The mesh with those faces as inner ones between whose cells nothing is to be seen. It has none
+/// yet.
+FaceMesh mark_inner_faces(const FaceMesh &mesh,
+                          const std::function<bool(std::uint32_t, std::uint32_t)> &look_as_one);
 
 } // namespace kb

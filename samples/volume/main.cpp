@@ -55,7 +55,8 @@ kb::FaceMesh choose_faces(const kb::Gl &gl, const kb::VolumeOptions &options,
             const kb::CellClusters clusters =
                 kb::cluster_cells(scene.grid, scene.faces, scene.range,
                                   kb::ColorTolerance(scene.transfer, options.tolerance));
-            faces = kb::mark_inner_faces(scene.faces, clusters);
+            faces = kb::mark_inner_faces(
+                scene.faces, [&clusters](auto a, auto b) { return clusters.join(a, b); });
             report.clusters = clusters.count;
             report.inner_faces = faces.inner_count;
         });

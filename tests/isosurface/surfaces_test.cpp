@@ -4,6 +4,7 @@
 
 #include "isosurface_test.hpp"
 #include "picture_rays.hpp"
+#include "surface_faces.hpp"
 #include "surface_reference.hpp"
 
 #include "unit_sphere.hpp"
@@ -42,13 +43,29 @@ float wave(glm::vec3 p)
     return generated_wave(1.7F * p);
 }
 
+/// The faces about the surfaces.
+FaceMesh faces_with(const TestGrid &scene, const std::vector<float> &values)
+{
+    const ScalarRange range = range_of(scene.field.values);
+    std::vector<IsoValue> wanted;
+    for (const float value : values)
+        wanted.push_back({value, {}, normalized(value, range)});
+    return mark_faces_without_surface(make_face_mesh(scene.grid, scene.field), scene.grid.cells,
+                                      range, wanted);
+}
+
 class SurfacesTest : public IsosurfaceTest
 {
 protected:
     ImageRgbaF draw(const TestGrid &scene, const std::vector<float> &values, int k = 24)
     {
-        auto stream = make_face_stream(gl(), make_face_mesh(scene.grid, scene.field),
-                                       range_of(scene.field.values));
+        return draw_faces(scene, faces_with(scene, values), values, k);
+    }
+
+    ImageRgbaF draw_faces(const TestGrid &scene, const FaceMesh &faces,
+                          const std::vector<float> &values, int k = 24)
+    {
+        auto stream = make_face_stream(gl(), faces, range_of(scene.field.values));
         return draw_stream(stream, range_of(scene.field.values), values, k);
     }
 };
@@ -159,6 +176,26 @@ TEST_F(SurfacesTest, OfTheDistanceFieldIsASphere)
         }
     }
     EXPECT_GT(surfaces, 1000);
+}
+
+TEST_F(SurfacesTest, DoNotNeedFacesBetweenCellsWithoutOne)
+{
+    const TestGrid scene = make_test_grid({.cubes = 8, .sliver_share = 0.0F}, wave);
+    const FaceMesh all = make_face_mesh(scene.grid, scene.field);
+    const auto expect_same = [&](const std::vector<float> &values, float tolerance) {
+        const FaceMesh faces = faces_with(scene, values);
+        EXPECT_LT(faces.drawn_count(), all.drawn_count() * 3 / 4);
+        const ImageRgbaF drawn = draw_faces(scene, faces, values);
+        const ImageRgbaF expected = draw_faces(scene, all, values);
+        for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
+            EXPECT_NEAR(drawn.pixels[i].x, expected.pixels[i].x, tolerance) << i;
+            EXPECT_EQ(drawn.pixels[i].y, expected.pixels[i].y) << i;
+        }
+    };
+    expect_same({0.3F}, 0.0F);
+    expect_same({0.95F, -0.6F, 0.1F}, 0.0F);
+    // Through a point of the grid, where rounding decides in which cell the surface is found.
+    expect_same({scene.field.values[100]}, 16.0F * 0x1p-23F);
 }
 
 TEST_F(SurfacesTest, OfManyIsoValuesAreTheNearestOfEach)
