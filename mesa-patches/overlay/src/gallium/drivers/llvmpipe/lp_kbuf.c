@@ -247,8 +247,9 @@ num_entries(const struct llvmpipe_context *lp)
 
 
 /**
- * Whether to work on the thread's copy of the tile.  Sample planes and 1D
- * resources are left to the way that works on the color buffers themselves.
+ * Whether to work on the thread's copy of the tile.  Sample planes, 1D
+ * resources, and fragment shaders that read the color buffers are left to the
+ * way that works on the color buffers themselves.
  */
 static bool
 use_tile(const struct llvmpipe_context *lp)
@@ -257,6 +258,7 @@ use_tile(const struct llvmpipe_context *lp)
 
    if (!debug_get_option_kbuf_tile() ||
        util_framebuffer_get_num_samples(fb) > 1 ||
+       lp->fs->base.ir.nir->info.fs.uses_fbfetch_output ||
        (fb->zsbuf && llvmpipe_resource_is_1d(fb->zsbuf->texture)))
       return false;
 
@@ -364,7 +366,6 @@ lp_kbuf_update_scene(struct lp_setup_context *setup, bool new_scene)
       formats[i] = setup->fb.cbufs[i] ? setup->fb.cbufs[i]->format :
                                         PIPE_FORMAT_NONE;
    }
-   stored->tiled = use_tile(lp);
    stored->num_entries = num_entries(lp);
    stored->num_color_buffers = kbuf->num_color_buffers;
    stored->written = kbuf->program->written;
@@ -387,6 +388,7 @@ lp_kbuf_update_scene(struct lp_setup_context *setup, bool new_scene)
    if (!referenced)
       return false;
 
+   scene->runs_kbuf = true;
    setup->fs.current.kbuf = stored;
    return true;
 }

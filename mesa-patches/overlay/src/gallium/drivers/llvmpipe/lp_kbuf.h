@@ -88,7 +88,6 @@ struct lp_jit_kbuf
    struct lp_jit_kbuf_resources resources;
 
    /* For lp_kbuf_tile.c only. */
-   bool tiled;
    unsigned num_entries;
    unsigned num_color_buffers;
    unsigned block_size; /**< bytes of a block of the tile */

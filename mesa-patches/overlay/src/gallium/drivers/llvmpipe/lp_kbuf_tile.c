@@ -6,12 +6,13 @@
 #include "lp_kbuf_tile.h"
 
 #include "util/format/u_format.h"
-#include "util/u_memory.h"
 #include "util/u_math.h"
-#include "util/u_sse.h"
+#include "util/u_memory.h"
 
 #include "lp_rast_priv.h"
 #include "lp_scene.h"
+#include "lp_state_fs.h"
+#include "lp_tile_pixels.h"
 
 /* Room for all entries with the largest pixels. */
 #define TILE_DATA_SIZE \
@@ -36,126 +37,7 @@ lp_kbuf_layout_init(struct lp_kbuf_layout *layout, unsigned num_entries,
 }
 
 
-/** The first pixel of a quad of a block. */
-static inline uint8_t *
-quad_pixels(uint8_t *block, unsigned stride, unsigned bytes, unsigned quad)
-{
-   return block + quad / 2 * 2 * stride + quad % 2 * 2 * bytes;
-}
-
-
-static inline void
-load_pixels(uint32_t *words, uint8_t *block, unsigned stride, unsigned bytes)
-{
-   for (unsigned i = 0; i < 16; i++) {
-      const uint8_t *pixel = quad_pixels(block, stride, bytes, i / 4) +
-                             i % 4 / 2 * stride + i % 2 * bytes;
-
-      for (unsigned w = 0; w < DIV_ROUND_UP(bytes, 4); w++) {
-         uint32_t word = 0;
-
-         memcpy(&word, pixel + 4 * w, MIN2(bytes - 4 * w, 4));
-         words[16 * w + i] = word;
-      }
-   }
-}
-
-
-static inline void
-store_pixels(const uint32_t *words, uint8_t *block, unsigned stride,
-             unsigned bytes)
-{
-   for (unsigned i = 0; i < 16; i++) {
-      uint8_t *pixel = quad_pixels(block, stride, bytes, i / 4) +
-                       i % 4 / 2 * stride + i % 2 * bytes;
-
-      for (unsigned w = 0; w < DIV_ROUND_UP(bytes, 4); w++)
-         memcpy(pixel + 4 * w, &words[16 * w + i], MIN2(bytes - 4 * w, 4));
-   }
-}
-
-
-#if DETECT_ARCH_SSE
-
-static void
-load_pixels_128(uint32_t *words, uint8_t *block, unsigned stride)
-{
-   for (unsigned quad = 0; quad < 4; quad++) {
-      uint8_t *pixels = quad_pixels(block, stride, 16, quad);
-      const __m128i p0 = _mm_loadu_si128((const __m128i *)pixels);
-      const __m128i p1 = _mm_loadu_si128((const __m128i *)(pixels + 16));
-      const __m128i p2 = _mm_loadu_si128((const __m128i *)(pixels + stride));
-      const __m128i p3 = _mm_loadu_si128((const __m128i *)(pixels + stride + 16));
-      __m128i *dst = (__m128i *)words + quad;
-
-      transpose4_epi32(&p0, &p1, &p2, &p3, &dst[0], &dst[4], &dst[8], &dst[12]);
-   }
-}
-
-static void
-store_pixels_128(const uint32_t *words, uint8_t *block, unsigned stride)
-{
-   for (unsigned quad = 0; quad < 4; quad++) {
-      uint8_t *pixels = quad_pixels(block, stride, 16, quad);
-      const __m128i *src = (const __m128i *)words + quad;
-      __m128i p0, p1, p2, p3;
-
-      transpose4_epi32(&src[0], &src[4], &src[8], &src[12], &p0, &p1, &p2, &p3);
-      _mm_storeu_si128((__m128i *)pixels, p0);
-      _mm_storeu_si128((__m128i *)(pixels + 16), p1);
-      _mm_storeu_si128((__m128i *)(pixels + stride), p2);
-      _mm_storeu_si128((__m128i *)(pixels + stride + 16), p3);
-   }
-}
-
-#else
-
-static void
-load_pixels_128(uint32_t *words, uint8_t *block, unsigned stride)
-{
-   load_pixels(words, block, stride, 16);
-}
-
-static void
-store_pixels_128(const uint32_t *words, uint8_t *block, unsigned stride)
-{
-   store_pixels(words, block, stride, 16);
-}
-
-#endif
-
-
-/** Copy a block of one entry in (or out), with the pixel size constant. */
-static void
-copy_block(uint32_t *words, uint8_t *block, unsigned stride, unsigned bytes,
-           bool in)
-{
-   switch (bytes) {
-#define CASE(n) \
-   case n: \
-      if (in) \
-         load_pixels(words, block, stride, n); \
-      else \
-         store_pixels(words, block, stride, n); \
-      break
-   CASE(1);
-   CASE(2);
-   CASE(4);
-   CASE(8);
-   CASE(12);
-#undef CASE
-   case 16:
-      if (in)
-         load_pixels_128(words, block, stride);
-      else
-         store_pixels_128(words, block, stride);
-      break;
-   default:
-      unreachable("pixel size of a color buffer");
-   }
-}
-
-
+/** Copy entries of a block in (or out), or clear them. */
 static void
 copy_entries(struct lp_kbuf_tile *tile, unsigned block, uint64_t entries,
              bool in)
@@ -165,7 +47,7 @@ copy_entries(struct lp_kbuf_tile *tile, unsigned block, uint64_t entries,
    const struct lp_jit_kbuf *kbuf = tile->kbuf;
    const unsigned x = block % (TILE_SIZE / 4) * 4;
    const unsigned y = block / (TILE_SIZE / 4) * 4;
-   uint8_t *words = tile->data + block * kbuf->block_size;
+   uint32_t *words = (uint32_t *)(tile->data + block * kbuf->block_size);
 
    for (unsigned e = 0; e < kbuf->num_entries; e++) {
       const unsigned cbuf = e % kbuf->num_color_buffers;
@@ -175,15 +57,23 @@ copy_entries(struct lp_kbuf_tile *tile, unsigned block, uint64_t entries,
 
       const unsigned stride = scene->cbufs[cbuf].stride;
       const unsigned bytes = scene->cbufs[cbuf].format_bytes;
+      uint8_t *pixels = task->color_tiles[cbuf] +
+                        e / kbuf->num_color_buffers * kbuf->layer_stride[cbuf] +
+                        y * stride + x * bytes;
 
-      if (entries & BITFIELD64_BIT(e)) {
-         copy_block((uint32_t *)words,
-                    task->color_tiles[cbuf] +
-                    e / kbuf->num_color_buffers * kbuf->layer_stride[cbuf] +
-                    y * stride + x * bytes,
-                    stride, bytes, in);
+      if (!(entries & BITFIELD64_BIT(e))) {
+         /* stays as it is */
+      } else if (!in) {
+         const uint32_t *const quads[4] = {
+            words, words + 4, words + 8, words + 12
+         };
+         lp_tile_store_pixels(quads, pixels, stride, bytes, false);
+      } else if (tile->cleared & (1 << cbuf)) {
+         lp_tile_fill_pixels(words, tile->clears[cbuf]->color_val.ui, bytes);
+      } else {
+         lp_tile_load_pixels(words, pixels, stride, bytes);
       }
-      words += DIV_ROUND_UP(bytes, 4) * LP_KBUF_WORD_SIZE;
+      words += DIV_ROUND_UP(bytes, 4) * 16;
    }
 }
 
@@ -193,18 +83,95 @@ load_block(struct lp_kbuf_tile *tile, uint32_t block)
 {
    copy_entries(tile, block, ~UINT64_C(0), true);
    tile->valid[block] = true;
+   tile->num_valid++;
+}
+
+
+/** The entries that a color buffer has in the tile. */
+static uint64_t
+entries_of(const struct lp_jit_kbuf *kbuf, unsigned cbuf)
+{
+   uint64_t entries = 0;
+
+   for (unsigned e = cbuf; e < kbuf->num_entries; e += kbuf->num_color_buffers)
+      entries |= BITFIELD64_BIT(e);
+   return entries;
+}
+
+
+/** Whether all layers of a color buffer are in the tile. */
+static bool
+has_all(const struct lp_kbuf_tile *tile, unsigned cbuf)
+{
+   const struct lp_jit_kbuf *kbuf = tile->kbuf;
+
+   return cbuf < kbuf->num_color_buffers &&
+          util_bitcount64(entries_of(kbuf, cbuf)) ==
+          tile->task->scene->cbufs[cbuf].layer_count;
+}
+
+
+static void
+store_blocks(struct lp_kbuf_tile *tile)
+{
+   const struct lp_rasterizer_task *task = tile->task;
+   uint64_t stored = tile->written;
+
+   u_foreach_bit(cbuf, tile->cleared)
+      stored |= entries_of(tile->kbuf, cbuf);
+
+   for (unsigned y = 0; y < DIV_ROUND_UP(task->height, 4); y++) {
+      for (unsigned x = 0; x < DIV_ROUND_UP(task->width, 4); x++) {
+         const unsigned block = y * (TILE_SIZE / 4) + x;
+
+         /* Clear what is not in use by the way. */
+         if (tile->cleared && !tile->valid[block])
+            load_block(tile, block);
+         if (tile->valid[block])
+            copy_entries(tile, block, stored, false);
+      }
+   }
 }
 
 
 void
 lp_kbuf_tile_flush(struct lp_kbuf_tile *tile)
 {
-   for (unsigned block = 0; block < LP_KBUF_TILE_BLOCKS; block++) {
-      if (tile->valid[block])
-         copy_entries(tile, block, tile->written, false);
+   const uint32_t cleared = tile->cleared;
+
+   if (tile->num_valid) {
+      store_blocks(tile);
+      memset(tile->valid, 0, sizeof tile->valid);
+      tile->num_valid = 0;
+      tile->cleared = 0;
+   } else {
+      tile->cleared = 0;
+      u_foreach_bit(cbuf, cleared) {
+         const union lp_rast_cmd_arg arg = { .clear_rb = tile->clears[cbuf] };
+
+         tile->clear_color(tile->task, arg);
+      }
    }
-   memset(tile->valid, 0, sizeof tile->valid);
-   tile->written = tile->kbuf->written;
+   tile->written = tile->kbuf ? tile->kbuf->written : 0;
+}
+
+
+bool
+lp_kbuf_tile_clear(struct lp_kbuf_tile *tile,
+                   const struct lp_rast_clear_rb *clear)
+{
+   const struct lp_rasterizer_task *task = tile->task;
+
+   /* The rest of a block at the edge may belong to the texture. */
+   if (tile->bypassed || task->width % 4 || task->height % 4 ||
+       (tile->kbuf && !has_all(tile, clear->cbuf)))
+      return false;
+
+   if (tile->num_valid)
+      lp_kbuf_tile_flush(tile);
+   tile->clears[clear->cbuf] = clear;
+   tile->cleared |= 1 << clear->cbuf;
+   return true;
 }
 
 
@@ -214,17 +181,23 @@ lp_kbuf_tile_set_state(struct lp_rasterizer_task *task)
    struct lp_kbuf_tile *tile = task->thread_data.kbuf_tile;
    const struct lp_jit_kbuf *kbuf = task->state->kbuf;
 
-   if (kbuf && !kbuf->tiled)
+   if (kbuf && !task->state->variant->key.kbuf.tiled)
       kbuf = NULL;
 
-   if (tile->kbuf &&
-       (!kbuf || kbuf->num_entries != tile->kbuf->num_entries ||
-        kbuf->num_color_buffers != tile->kbuf->num_color_buffers))
+   if (!kbuf ||
+       (tile->kbuf &&
+        (kbuf->num_entries != tile->kbuf->num_entries ||
+         kbuf->num_color_buffers != tile->kbuf->num_color_buffers)))
       lp_kbuf_tile_end(tile);
+   tile->bypassed = !kbuf;
 
    if (kbuf) {
       tile->kbuf = kbuf;
       tile->written |= kbuf->written;
+      u_foreach_bit(cbuf, tile->cleared) {
+         if (!has_all(tile, cbuf))
+            lp_kbuf_tile_yield(tile);
+      }
    }
 }
 

@@ -17,6 +17,10 @@
  * A block is copied when the first fragment comes to it, and goes back to the
  * color buffers before anything else can look at them: at the end of the
  * tile and at commands that do not belong to the stage.
+ *
+ * Clears are only noted.  They are done to the tile's blocks as these come
+ * into use, and to the color buffers at the end, together with all other
+ * writing.
  */
 
 #ifndef LP_KBUF_TILE_H
@@ -28,6 +32,7 @@
 #include "util/format/u_formats.h"
 #include "lp_kbuf.h"
 #include "lp_limits.h"
+#include "lp_scene.h"
 
 struct lp_rasterizer;
 struct lp_rasterizer_task;
@@ -47,6 +52,13 @@ struct lp_kbuf_tile
    struct lp_rasterizer_task *task;
    const struct lp_jit_kbuf *kbuf;  /**< NULL: no block is valid */
    uint64_t written;                /**< entries that have to go back */
+   unsigned num_valid;
+   bool bypassed;  /**< draws work on the color buffers themselves */
+
+   /* What is to be cleared before anything else. */
+   uint32_t cleared;  /**< a bit for each color buffer */
+   const struct lp_rast_clear_rb *clears[PIPE_MAX_COLOR_BUFS];
+   lp_rast_cmd_func clear_color;  /**< clears a color buffer itself */
 };
 
 /** Where the entries of a block are, in words. */
@@ -68,7 +80,20 @@ lp_kbuf_tiles_create(struct lp_rasterizer *rast);
 void
 lp_kbuf_tiles_destroy(struct lp_rasterizer *rast);
 
-/** Give all blocks of a tile that has a state back. */
+/** A bin begins in which clears may be noted. */
+static inline void
+lp_kbuf_tile_begin(struct lp_kbuf_tile *tile, lp_rast_cmd_func clear_color)
+{
+   tile->clear_color = clear_color;
+   tile->bypassed = false;
+}
+
+/** Note a clear; \return false if it has to be done to the color buffer. */
+bool
+lp_kbuf_tile_clear(struct lp_kbuf_tile *tile,
+                   const struct lp_rast_clear_rb *clear);
+
+/** Give everything back, and do the clears that were noted. */
 void
 lp_kbuf_tile_flush(struct lp_kbuf_tile *tile);
 
@@ -79,7 +104,7 @@ lp_kbuf_tile_flush(struct lp_kbuf_tile *tile);
 static inline void
 lp_kbuf_tile_yield(struct lp_kbuf_tile *tile)
 {
-   if (tile && tile->kbuf)
+   if (tile && (tile->num_valid || tile->cleared))
       lp_kbuf_tile_flush(tile);
 }
 

@@ -8,7 +8,7 @@
 #include "util/u_math.h"
 
 #include "lp_peel_parts.h"
-#include "lp_peel_pixels.h"
+#include "lp_tile_pixels.h"
 #include "lp_rast_priv.h"
 #include "lp_scene.h"
 
@@ -55,7 +55,7 @@ load_depth(uint32_t *words, const uint8_t *block, unsigned stride,
    const uint32_t mask = lp_peel_depth_mask(format);
    uint32_t pixels[2 * 16];
 
-   lp_peel_load_pixels(pixels, block, stride, format->bytes);
+   lp_tile_load_pixels(pixels, block, stride, format->bytes);
    for (unsigned i = 0; i < 16; i++) {
       words[i] = lp_peel_compare_bits(format,
                                       (pixels[i] >> format->shift) & mask);
@@ -82,19 +82,11 @@ load_layer(const struct lp_peel_tile *tile, uint32_t *words, unsigned block,
       if (!scene->fb.cbufs[i])
          continue;
       if (!(tile->cleared_colors & (1 << i))) {
-         lp_peel_load_pixels(words, color_block(task, i, block, layer, sample),
+         lp_tile_load_pixels(words, color_block(task, i, block, layer, sample),
                              scene->cbufs[i].stride, bytes);
       }
       words += DIV_ROUND_UP(bytes, 4) * 16;
    }
-}
-
-
-static void
-fill_word(uint32_t *words, uint32_t value)
-{
-   for (unsigned i = 0; i < 16; i++)
-      words[i] = value;
 }
 
 
@@ -110,8 +102,9 @@ clear_layer(const struct lp_peel_tile *tile, uint32_t *words)
       const uint32_t bits =
          (tile->depth_clear.clear_zstencil.value >> format->shift) &
          lp_peel_depth_mask(format);
+      const uint32_t word = lp_peel_compare_bits(format, bits);
 
-      fill_word(words, lp_peel_compare_bits(format, bits));
+      lp_tile_fill_pixels(words, &word, sizeof word);
    }
    words += 16;
 
@@ -120,18 +113,14 @@ clear_layer(const struct lp_peel_tile *tile, uint32_t *words)
 
       if (!scene->fb.cbufs[i])
          continue;
-      for (unsigned w = 0; w < DIV_ROUND_UP(bytes, 4); w++, words += 16) {
-         if (tile->cleared_colors & (1 << i)) {
-            const union util_color *color =
-               &tile->color_clears[i].clear_rb->color_val;
-            uint32_t word = 0;
-
-            memcpy(&word, &color->ui[w], MIN2(bytes - 4 * w, 4));
-            fill_word(words, word);
-         } else {
-            all = false;
-         }
+      if (tile->cleared_colors & (1 << i)) {
+         lp_tile_fill_pixels(words,
+                             tile->color_clears[i].clear_rb->color_val.ui,
+                             bytes);
+      } else {
+         all = false;
       }
+      words += DIV_ROUND_UP(bytes, 4) * 16;
    }
    return all;
 }
@@ -259,7 +248,7 @@ store_depth(const struct lp_peel_tile *tile, const uint32_t *const quads[4],
       const uint64_t clear_value = tile->depth_clear.clear_zstencil.value;
       uint32_t old[2 * 16];
 
-      lp_peel_load_pixels(old, block, stride, format->bytes);
+      lp_tile_load_pixels(old, block, stride, format->bytes);
       for (unsigned w = 0; w < format->bytes / 4; w++) {
          const uint32_t clear = clear_mask >> (32 * w);
          const uint32_t value = clear_value >> (32 * w);
@@ -273,7 +262,7 @@ store_depth(const struct lp_peel_tile *tile, const uint32_t *const quads[4],
          }
       }
    }
-   lp_peel_store_pixels(pixel_quads, block, stride, format->bytes, stream);
+   lp_tile_store_pixels(pixel_quads, block, stride, format->bytes, stream);
 }
 
 
@@ -322,7 +311,7 @@ store_layer(const struct lp_peel_tile *tile, const struct stored_block *blocks,
 
          for (unsigned q = 0; q < 4; q++)
             color_quads[q] = quads[b][q] + words;
-         lp_peel_store_pixels(color_quads,
+         lp_tile_store_pixels(color_quads,
                               color_block(task, i, blocks[b].block, layer,
                                           sample),
                               scene->cbufs[i].stride, bytes, stream);
@@ -395,5 +384,5 @@ lp_peel_store_blocks(struct lp_peel_tile *tile)
       for (unsigned s = 0; s < peel->num_samples; s++)
          store_row(tile, row, s);
    }
-   lp_peel_stream_end();
+   lp_tile_stream_end();
 }

@@ -9,6 +9,7 @@
 
 #include "util/u_atomic.h"
 
+#include "lp_kbuf_rast.h"
 #include "lp_peel_tile.h"
 #include "lp_rast_priv.h"
 #include "lp_state_fs.h"
@@ -125,20 +126,26 @@ lp_peel_rasterize_bin(struct lp_rasterizer_task *task,
                       const lp_rast_cmd_func *dispatch)
 {
    struct lp_peel_tile *tile = lp_peel_tile_begin(task, dispatch);
+   bool bypassed = false;  /* draws work on the buffers themselves */
 
    for (const struct cmd_block *block = bin->head; block; block = block->next) {
       for (unsigned k = 0; k < block->count; k++) {
          const unsigned cmd = block->cmd[k];
          const union lp_rast_cmd_arg arg = block->arg[k];
 
+         lp_rast_fetch_ahead(block, k);
          switch (cmd) {
          case LP_RAST_OP_CLEAR_COLOR:
          case LP_RAST_OP_CLEAR_ZSTENCIL:
-            lp_peel_tile_clear(tile, cmd, arg);
+            if (bypassed)
+               dispatch[cmd](task, arg);
+            else
+               lp_peel_tile_clear(tile, cmd, arg);
             break;
          case LP_RAST_OP_SET_STATE:
             dispatch[cmd](task, arg);
             lp_peel_tile_set_state(tile);
+            bypassed = !tile->peel;
             break;
          case LP_RAST_OP_BEGIN_QUERY:
          case LP_RAST_OP_END_QUERY:

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: MIT
  */
 
-#include "lp_peel_pixels.h"
+#include "lp_tile_pixels.h"
 
 #include <string.h>
 
@@ -172,7 +172,7 @@ store_128(const uint32_t *const quads[4], uint8_t *block, unsigned stride,
 
 
 void
-lp_peel_stream_end(void)
+lp_tile_stream_end(void)
 {
    _mm_sfence();
 }
@@ -225,7 +225,7 @@ store_128(const uint32_t *const quads[4], uint8_t *block, unsigned stride,
 
 
 void
-lp_peel_stream_end(void)
+lp_tile_stream_end(void)
 {
 }
 
@@ -235,7 +235,7 @@ lp_peel_stream_end(void)
 /* In what follows the sizes are constant for the sake of the loops. */
 
 void
-lp_peel_load_pixels(uint32_t *words, const uint8_t *block, unsigned stride,
+lp_tile_load_pixels(uint32_t *words, const uint8_t *block, unsigned stride,
                     unsigned bytes)
 {
    switch (bytes) {
@@ -264,7 +264,20 @@ lp_peel_load_pixels(uint32_t *words, const uint8_t *block, unsigned stride,
 
 
 void
-lp_peel_store_pixels(const uint32_t *const quads[4], uint8_t *block,
+lp_tile_fill_pixels(uint32_t *words, const uint32_t *value, unsigned bytes)
+{
+   for (unsigned w = 0; w < DIV_ROUND_UP(bytes, 4); w++) {
+      uint32_t word = 0;
+
+      memcpy(&word, &value[w], MIN2(bytes - 4 * w, 4));
+      for (unsigned i = 0; i < 16; i++)
+         words[16 * w + i] = word;
+   }
+}
+
+
+void
+lp_tile_store_pixels(const uint32_t *const quads[4], uint8_t *block,
                      unsigned stride, unsigned bytes, bool stream)
 {
    if (((uintptr_t)block | stride) % 16)
