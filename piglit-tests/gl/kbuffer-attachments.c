@@ -272,6 +272,46 @@ sizes(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** Clears and programs stay in what all attachments have. */
+static enum piglit_result
+larger_than_framebuffer(void *data)
+{
+	static const GLenum buffers[2] = {
+		GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1
+	};
+	/* Parts of a tile of 64x64 and of a block of 4x4. */
+	const int small = 30, large = 70;
+	struct kb other = kb_create(GL_RGBA32F, 1, 0, small, small);
+	struct kb kb = kb_create(GL_RGBA32F, 1, 0, large, large);
+	bool pass;
+
+	if (kb_is_softpipe()) {
+		printf("softpipe clears all of an attachment, stock or not\n");
+		return PIGLIT_SKIP;
+	}
+	kb_fill(&kb, 0, 5, 5, 5, 5);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1,
+			       GL_TEXTURE_2D, other.tex[0], 0);
+	glDrawBuffers(2, buffers);
+	glClearColor(2, 2, 2, 2);
+	glClear(GL_COLOR_BUFFER_BIT);
+	kb_program("ADD result.kbuffer[0], kbuffer[0], 1;\n"
+		   "ADD result.kbuffer[1], kbuffer[1], 2;");
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	kb_draw_rect(&kb, 3, 0, 8, large, 0.5);
+	pass = kb_expect_rect(&kb, 0, 3, 0, 8, small, 0, 3, 3, 3, 3);
+	pass = kb_expect_rect(&kb, 0, 11, 0, small - 11, small, 0, 2, 2, 2,
+			      2) && pass;
+	pass = kb_expect_rect(&kb, 0, small, 0, large - small, large, 0, 5, 5,
+			      5, 5) && pass;
+	pass = kb_expect_rect(&kb, 0, 0, small, large, large - small, 0, 5, 5,
+			      5, 5) && pass;
+	pass = kb_expect_only_rect(&other, 0, 3, 0, 8, small,
+				   (const float[4]) { 4, 4, 4, 4 },
+				   (const float[4]) { 2, 2, 2, 2 }) && pass;
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("renderbuffer", renderbuffer, NULL),
 	KB_SUBTEST("level", level, NULL),
@@ -282,6 +322,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("layered-cube", layered, "cube"),
 	KB_SUBTEST("sampled-afterwards", sampled_afterwards, NULL),
 	KB_SUBTEST("sizes", sizes, NULL),
+	KB_SUBTEST("larger-than-framebuffer", larger_than_framebuffer, NULL),
 	KB_SUBTEST_END
 };
 

@@ -321,6 +321,33 @@ blit_between(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** A fragment shader that fetches sees what programs and clears left. */
+static enum piglit_result
+both_stages(void *data)
+{
+	struct kb kb = kb_create(GL_RGBA8, 1, 0, W, W);
+
+	if (!piglit_is_extension_supported("GL_EXT_shader_framebuffer_fetch")) {
+		printf("no framebuffer fetch here\n");
+		return PIGLIT_SKIP;
+	}
+	kb_use_glsl("#version 130\n"
+		    "void main() { gl_Position = gl_Vertex; }\n", NULL,
+		    "#version 130\n"
+		    "#extension GL_EXT_shader_framebuffer_fetch: require\n"
+		    "inout vec4 color;\n"
+		    "void main() { color += vec4(1, 2, 3, 4) / 255.0; }\n");
+	kb_program("ADD result.kbuffer[0], fragment.color, { 0, 0, 0, 0.2 };");
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	glClearColor(B(100), B(100), B(100), B(10));
+	glClear(GL_COLOR_BUFFER_BIT);
+	for (int i = 0; i < 3; i++)
+		kb_draw(&kb);
+	/* 0.2 is 51 of 255. */
+	return kb_expect(&kb, 0, TOLERANCE, B(103), B(106), B(109),
+			 B(10 + 3 * (4 + 51))) ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("texel-fetch", texel_fetch, NULL),
 	KB_SUBTEST("last-frag-data", last_frag_data, NULL),
@@ -332,6 +359,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("overdraw", overdraw, NULL),
 	KB_SUBTEST("draw-buffers", draw_buffers, NULL),
 	KB_SUBTEST("blit-between", blit_between, NULL),
+	KB_SUBTEST("both-stages", both_stages, NULL),
 	KB_SUBTEST_END
 };
 

@@ -256,15 +256,16 @@ interleaved(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
-/** With no other change of state: the second draw goes on with the first's. */
+/**
+ * With no other change of state: the second draw goes on with the first's.
+ * The program names n entries.
+ */
 static enum piglit_result
-clear_between_draws(void *data)
+clear_between(const struct shape *shape, int n)
 {
-	const struct shape *shape = data;
 	const float color[4] = { 1, 2, 3, 4 };
 	struct kb kb = kb_create(shape->format, shape->attachments,
 				 shape->layers, W, H);
-	const int n = MIN2(kb_entries(&kb), MAX_ENTRIES);
 	const struct rect all = { 0, 0, W, H };
 	image *model = calloc(kb_entries(&kb), sizeof(image));
 	char *text = malloc(64 * n + 512);
@@ -291,6 +292,53 @@ clear_between_draws(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+static enum piglit_result
+clear_between_draws(void *data)
+{
+	const struct shape *shape = data;
+
+	return clear_between(shape, shape->attachments * shape->layers);
+}
+
+static enum piglit_result
+clear_between_draws_of_some(void *data)
+{
+	const struct shape *shape = data;
+
+	return clear_between(shape, shape->attachments * shape->layers / 2);
+}
+
+/** The same of draws without a program, among some with one. */
+static enum piglit_result
+clear_between_plain_draws(void *data)
+{
+	const float black[4] = { 0, 0, 0, 0 }, color[4] = { 1, 2, 3, 4 };
+	const float before[4] = { 7, 7, 7, 7 };
+	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, H);
+	bool pass;
+
+	kb_program("MOV result.kbuffer[0], kbuffer[0];\n");
+	kb_fragment_values(&color, 1);
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	kb_draw_rect(&kb, 0, 0, W, H, 0.5);
+	glDisable(GL_KBUFFER_PROGRAM_MESA);
+	kb_draw_rect(&kb, 0, 0, W, H, 0.5);
+	glClearColor(7, 7, 7, 7);
+	glClear(GL_COLOR_BUFFER_BIT);
+	kb_draw_rect(&kb, 9, 6, 31, 22, 0.5);
+	pass = kb_expect_only_rect(&kb, 0, 9, 6, 31, 22, color, before);
+
+	/* And the other way round: what was cleared is then drawn to. */
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT);
+	kb_draw_rect(&kb, 9, 6, 31, 22, 0.5);
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	kb_draw_rect(&kb, 0, 0, W, H, 0.5);
+	glDisable(GL_KBUFFER_PROGRAM_MESA);
+	pass = kb_expect_only_rect(&kb, 0, 9, 6, 31, 22, color, black) && pass;
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 static const struct shape one = { 1, 0, GL_RGBA32F },
 	eight = { 8, 0, GL_RGBA32F }, layers = { 1, 16, GL_RGBA32F },
 	many = { 8, 8, GL_RGBA32F }, bytes = { 4, 4, GL_RGBA8 },
@@ -304,6 +352,10 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("4x4-rgba8", interleaved, &bytes),
 	KB_SUBTEST("3x5-rgba16f", interleaved, &halves),
 	KB_SUBTEST("clear-between-draws", clear_between_draws, &many),
+	KB_SUBTEST("clear-between-draws-of-some", clear_between_draws_of_some,
+		   &layers),
+	KB_SUBTEST("clear-between-plain-draws", clear_between_plain_draws,
+		   NULL),
 	KB_SUBTEST_END
 };
 

@@ -221,6 +221,37 @@ one_layer(void *data)
 	return peel_end(&p, pass);
 }
 
+/** Between draws that do not peel, with no other change of state. */
+static enum piglit_result
+between_plain_draws(void *data)
+{
+	const struct peel_quad all = { 0, 0, W, H, .5, 1 };
+	const struct peel_quad some = { 5, 6, 50, 30, .5, 2 };
+	struct peel p = make(GL_DEPTH_COMPONENT32F);
+
+	draw(&p, 8, 1);
+	glDisable(GL_DEPTH_PEELING_MESA);
+	peel_draw_gl(&p, &all, 1);
+	peel_clear(&p);
+	peel_draw_gl(&p, &some, 1);
+	glEnable(GL_DEPTH_PEELING_MESA);
+	for (int a = 0; a < p.colors; a++) {
+		uint32_t color[4];
+
+		for (int c = 0; c < 4; c++)
+			color[c] = peel_color_code(p.color[a], a, c, some.id);
+		for (int y = some.y0; y < some.y1; y++) {
+			for (int x = some.x0; x < some.x1; x++) {
+				const int i = (y * W + x) * K;
+
+				memcpy(p.model.color[i * p.colors + a], color,
+				       sizeof color);
+			}
+		}
+	}
+	return peel_end(&p, peel_check(&p));
+}
+
 /** Many times, with draws of a few pixels between. */
 static enum piglit_result
 often(void *data)
@@ -249,6 +280,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("separately", separately, NULL),
 	KB_SUBTEST("masked", masked, NULL),
 	KB_SUBTEST("one-layer", one_layer, NULL),
+	KB_SUBTEST("between-plain-draws", between_plain_draws, NULL),
 	KB_SUBTEST("often", often, NULL),
 	KB_SUBTEST_END
 };

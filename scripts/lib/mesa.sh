@@ -77,9 +77,9 @@ build_sanitized_mesa() {
 # What of llvmpipe the threads share: scenes, fences, tiles, and what depth peeling keeps
 build_thread_mesa() {
     local name files=(src/mesa/state_tracker/st_{kbuffer,peel}.c)
-    for name in clear context draw_arrays fence flush kbuf kbuf_tile peel peel_parts peel_pixels \
+    for name in clear context draw_arrays fence flush kbuf kbuf_rast kbuf_tile peel peel_parts \
         peel_rast peel_tile query rast rast_linear rast_rect rast_tri scene scene_queue setup \
-        setup_rect setup_tri setup_vbuf state_derived texture; do
+        setup_rect setup_tri setup_vbuf state_derived texture tile_pixels; do
         files+=("src/gallium/drivers/llvmpipe/lp_$name.c")
     done
     instrument thread -fsanitize=thread "${files[@]}"
