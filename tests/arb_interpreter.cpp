@@ -131,8 +131,8 @@ ArbInterpreter::Operand ArbInterpreter::parse_operand(std::string text,
 ArbInterpreter::Instruction ArbInterpreter::parse_instruction(const std::string &statement) const
 {
     static const std::map<std::string, std::size_t> source_counts{
-        {"MOV", 1}, {"PK4UB", 1}, {"RCP", 1}, {"SLT", 2}, {"SUB", 2}, {"MUL", 2},
-        {"MIN", 2}, {"MAX", 2},   {"CMP", 3}, {"MAD", 3}, {"KIL", 1},
+        {"MOV", 1}, {"PK4UB", 1}, {"RCP", 1}, {"SGE", 2}, {"SLT", 2}, {"SUB", 2},
+        {"MUL", 2}, {"MIN", 2},   {"MAX", 2}, {"CMP", 3}, {"MAD", 3}, {"KIL", 1},
     };
     Instruction instruction;
     instruction.opcode = statement.substr(0, statement.find(' '));
@@ -214,7 +214,9 @@ bool ArbInterpreter::run(const Fragment &fragment, std::vector<glm::vec4> &kbuff
         if (instruction.opcode == "PK4UB")
             value = glm::vec4(pack_bytes(s[0]));
         for (int c = 0; c < 4; ++c) {
-            if (instruction.opcode == "SLT")
+            if (instruction.opcode == "SGE")
+                value[c] = s[0][c] >= s[1][c] ? 1.0F : 0.0F;
+            else if (instruction.opcode == "SLT")
                 value[c] = s[0][c] < s[1][c] ? 1.0F : 0.0F;
             else if (instruction.opcode == "SUB")
                 value[c] = s[0][c] - s[1][c];

@@ -52,7 +52,7 @@ std::string sort_and_add(int k)
     std::string text = "    if (front.x > 0.0";
     for (int i = 0; i < k; ++i)
         text += fmt::format(" || waiting[{}].x > 0.0", i);
-    text += ") {\n";
+    text += ") {\n        add_last();\n";
     for (int i = 0; i < k && k <= few; ++i) {
         for (int j = i + 1; j < k; ++j)
             text += fmt::format("        order(waiting[{}], waiting[{}]);\n", i, j);
@@ -60,7 +60,8 @@ std::string sort_and_add(int k)
     }
     if (k <= few)
         return text + "    }\n";
-    return fmt::format("    for (int i = 0; i < {0}; ++i) {{\n"
+    return fmt::format("    add_last();\n"
+                       "    for (int i = 0; i < {0}; ++i) {{\n"
                        "        for (int j = i + 1; j < {0}; ++j)\n"
                        "            order(waiting[i], waiting[j]);\n"
                        "        add(waiting[i]);\n"
@@ -94,10 +95,19 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k)
     text += PackedSegmentTexture::shader(table_size);
     text += make_volume_shader(0);
     text += order_function;
-    text += "void main()\n{\n"
-            "    ivec2 pixel = ivec2(gl_FragCoord.xy);\n";
-    text += fmt::format("    start({}, {});\n    vec2 waiting[{}];\n", fetch(0), fetch(1),
-                        2 * waiting_entries(k));
+    text += fmt::format("ivec2 pixel = ivec2(gl_FragCoord.xy);\n"
+                        "void add_last()\n"
+                        "{{\n"
+                        "    vec4 last = {};\n"
+                        "    vec3 change;\n"
+                        "    vec4 optics = unpack(last.xy, last.w, change);\n"
+                        "    add_optics(optics, change, last.z);\n"
+                        "}}\n"
+                        "void main()\n"
+                        "{{\n"
+                        "    start({}, {});\n"
+                        "    vec2 waiting[{}];\n",
+                        fetch(2), fetch(0), fetch(1), 2 * waiting_entries(k));
     text += "    vec4 pair;\n";
     for (int i = 0; i < waiting_entries(k); ++i)
         text += fmt::format("    pair = {}; waiting[{}] = pair.xy; waiting[{}] = pair.zw;\n",

@@ -21,10 +21,9 @@ SegmentOpacity segment_opacity(float x)
     float alpha = share * x;
     share *= 2.0F - alpha;
     alpha *= 2.0F - alpha;
-    // The other way round, alpha + alpha (1 - alpha), what should be 1 is 1.
-    share *= 2.0F - alpha;
-    alpha += alpha * (1.0F - alpha);
-    return {alpha, 2.0F - alpha - share};
+    // Written like this what should be 1 is 1; and 2 - alpha of what is returned is 1 + left^2.
+    const float left = 1.0F - alpha;
+    return {alpha + alpha * left, (1.0F + left * left) - (share + share * left)};
 }
 
 std::string make_opacity_program()
@@ -33,19 +32,19 @@ std::string make_opacity_program()
                        "MAD opacity.y, depth.x, {2}, {1};\n"
                        "MAD opacity.y, depth.x, opacity.y, {0};\n"
                        "MAD opacity.z, depth.x, {5}, {4};\n"
-                       "MAD opacity.z, depth.x, opacity.z, {3};\n"
-                       "MAD opacity.z, depth.x, opacity.z, 1.0;\n"
+                       "MUL opacity.w, depth.x, depth.x;\n"
+                       "MAD opacity.x, depth.x, {3}, 1.0;\n"
+                       "MAD opacity.z, opacity.z, opacity.w, opacity.x;\n"
                        "RCP opacity.z, opacity.z;\n"
                        "MUL opacity.y, opacity.y, opacity.z;\n"
                        "MUL opacity.x, opacity.y, depth.x;\n"
                        "SUB opacity.z, 2.0, opacity.x;\n"
                        "MUL opacity.xy, opacity, opacity.z;\n"
-                       "SUB opacity.z, 2.0, opacity.x;\n"
-                       "MUL opacity.y, opacity.y, opacity.z;\n"
                        "SUB opacity.z, 1.0, opacity.x;\n"
                        "MAD opacity.x, opacity.x, opacity.z, opacity.x;\n"
-                       "SUB opacity.z, 2.0, opacity.x;\n"
-                       "SUB opacity.y, opacity.z, opacity.y;\n",
+                       "MAD opacity.w, opacity.y, opacity.z, opacity.y;\n"
+                       "MAD opacity.z, opacity.z, opacity.z, 1.0;\n"
+                       "SUB opacity.y, opacity.z, opacity.w;\n",
                        n[0], n[1], n[2], q[0], q[1], q[2]);
 }
 
@@ -58,9 +57,9 @@ std::string make_opacity_shader()
                        "    float alpha = share * x;\n"
                        "    share *= 2.0 - alpha;\n"
                        "    alpha *= 2.0 - alpha;\n"
-                       "    share *= 2.0 - alpha;\n"
-                       "    alpha += alpha * (1.0 - alpha);\n"
-                       "    return vec2(alpha, 2.0 - alpha - share);\n"
+                       "    float left = 1.0 - alpha;\n"
+                       "    return vec2(alpha + alpha * left,\n"
+                       "                (1.0 + left * left) - (share + share * left));\n"
                        "}}\n",
                        n[0], n[1], n[2], q[0], q[1], q[2]);
 }

@@ -115,15 +115,19 @@ std::string PackedSegmentTexture::shader(TableSize size)
 {
     return make_place_shader(size) +
            fmt::format("uniform sampler2DRect segments;\n"
+                       "vec4 unpack(vec2 place, float range, out vec3 change)\n"
+                       "{{\n"
+                       "    vec4 texel = texture(segments, place);\n"
+                       "    vec3 whole = floor(texel.rgb);\n"
+                       "    change = (texel.rgb - whole - 0.5) * range;\n"
+                       "    return vec4(whole * {:.9e}, 2.0 * texel.a);\n"
+                       "}}\n"
                        "vec4 look_up(float from, float to, out vec3 change)\n"
                        "{{\n"
-                       "    vec4 texel = texture(segments, place(from, to));\n"
-                       "    vec3 whole = floor(texel.rgb);\n"
-                       "    change = (texel.rgb - whole - 0.5) *\n"
-                       "             ({:.9e} * max(abs(to - from), {:.9e}));\n"
-                       "    return vec4(whole * {:.9e}, 2.0 * texel.a);\n"
+                       "    float range = {:.9e} * max(abs(to - from), {:.9e});\n"
+                       "    return unpack(place(from, to), range, change);\n"
                        "}}\n",
-                       change_range, least_difference, 1.0 / color_steps);
+                       1.0 / color_steps, change_range, least_difference);
 }
 
 } // namespace kb

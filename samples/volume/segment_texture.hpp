@@ -54,7 +54,11 @@ public:
 
     void bind(int unit) const;
 
-    /// The same as GLSL: declares the uniform sampler2DRect segments.
+    /// GLSL 3.30: the same, of the uniform sampler2DRect segments, and
+    ///
+    ///     vec4 unpack(vec2 place, float range, out vec3 change)
+    ///
+    /// for the texel at a place, where range is change_range max(|difference|, least_difference).
     static std::string shader(TableSize size);
 
     /// A texel, of what the table holds for a difference of the scalars.

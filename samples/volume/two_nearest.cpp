@@ -25,16 +25,17 @@ int waiting_entries(int k)
 
 std::string make_take_nearest(int k, int first_entry)
 {
-    std::string text = "TEMP nearest, nearer;\n"
+    std::string text = "TEMP nearest, farther;\n"
                        "MOV nearest.xy, fragment.color;\n";
     for (int i = 0; i < k; ++i) {
         const int entry = first_entry + i / 2;
         const bool second = i % 2 == 1;
-        // CMP tests for less than zero.
+        // CMP tests for less than zero. What the entry keeps is the last operand: the compiler
+        // makes one condition of this and of that the fragment is there at all.
         fmt::format_to(std::back_inserter(text),
-                       "SUB nearer.x, nearest.x, kbuffer[{0}].{1};\n"
-                       "CMP result.kbuffer[{0}].{2}, nearer.x, kbuffer[{0}], nearest.xyxy;\n"
-                       "CMP nearest.xy, nearer.x, nearest, kbuffer[{0}].{3};\n",
+                       "SGE farther.x, nearest.x, kbuffer[{0}].{1};\n"
+                       "CMP result.kbuffer[{0}].{2}, -farther.x, nearest.xyxy, kbuffer[{0}];\n"
+                       "CMP nearest.xy, -farther.x, kbuffer[{0}].{3}, nearest;\n",
                        entry, second ? "z" : "x", second ? "zw" : "xy", second ? "zwzw" : "xyxy");
     }
     return text;

@@ -20,7 +20,7 @@ int waiting_entries(int k);
 
 /// The lines of an ARB program. They take the fragment from `fragment.color.xy` (depth, value),
 /// use and write the entries from first_entry on, and leave the nearest in `nearest.xy`. They
-/// declare the TEMPs nearest and nearer. Fragments of equal depth leave as they have come.
+/// declare the TEMPs nearest and farther. Fragments of equal depth leave as they have come.
 std::string make_take_nearest(int k, int first_entry);
 
 } // namespace kb

@@ -22,7 +22,7 @@
 namespace kb
 {
 
-static constexpr int first_waiting = 2;
+static constexpr int first_waiting = 3;
 static constexpr const char *header = "!!ARBfp1.0\n"
                                       "OPTION MESA_kbuffer_program;\n";
 
@@ -45,24 +45,55 @@ std::string make_clear_program(int k)
                   "END\n";
 }
 
-/// Leaves the texel in `optics`, and range * max(|difference|, least_difference) in `segment.w`.
-static std::string make_lookup(TableSize table)
+/// Composites the segment of entry 2. What needs it is the longest chain: it comes first.
+static std::string make_composite()
+{
+    return "TEMP optics, whole, depth, weight;\n"
+           "TEX optics, kbuffer[2], texture[0], RECT;\n"
+           "MUL depth.x, optics.w, kbuffer[2].z;\n" +
+           make_opacity_program() +
+           fmt::format("SUB weight.w, 1.0, kbuffer[0].w;\n"
+                       "MAD result.kbuffer[0].w, weight.w, opacity.x, kbuffer[0].w;\n"
+                       "MUL weight.x, weight.w, {};\n"
+                       "MUL weight.y, weight.w, kbuffer[2].w;\n"
+                       "MUL weight.xy, weight, opacity;\n"
+                       "FLR whole.xyz, optics;\n"
+                       "SUB optics.xyz, optics, whole;\n"
+                       "SUB optics.xyz, optics, 0.5;\n"
+                       "MUL optics.xyz, optics, weight.y;\n"
+                       "MAD optics.xyz, whole, weight.x, optics;\n"
+                       "ADD result.kbuffer[0].xyz, kbuffer[0], optics;\n",
+                       1.0 / PackedSegmentTexture::color_steps);
+}
+
+/// Makes entry 2 of entry 1 and of the nearest fragment, which becomes entry 1.
+static std::string make_segment(TableSize table)
 {
     using Packed = PackedSegmentTexture;
     const TablePlace place(table);
-    // s is untagged / scale - offset / scale.
+    // A scalar is (code - offset) / scale.
     constexpr double scale = CodedScalar::scale;
-    return fmt::format("ADD place.x, nearest.y, kbuffer[1].y;\n"
-                       "MAD place.x, place.x, {}, {};\n"
-                       "SUB segment.y, nearest.y, kbuffer[1].y;\n"
-                       "ABS segment.z, segment.y;\n"
-                       "MAX segment.w, segment.z, {};\n"
-                       "MUL segment.w, segment.w, {};\n"
-                       "ADD segment.z, segment.z, {};\n"
-                       "RCP segment.z, segment.z;\n"
-                       "MUL segment.z, segment.y, segment.z;\n"
-                       "MAD place.y, segment.z, {}, {};\n"
-                       "TEX optics, place, texture[0], RECT;\n",
+    return fmt::format("TEMP tag, segment;\n"
+                       "FLR tag.x, nearest.y;\n"
+                       "SUB nearest.y, nearest.y, tag.x;\n"
+                       "ADD result.kbuffer[1].z, kbuffer[1].z, tag.x;\n"
+                       // One that comes too late is the end of no segment: the farthest stays.
+                       "SUB segment.x, nearest.x, kbuffer[1].x;\n"
+                       "SGE segment.y, nearest.x, kbuffer[1].x;\n"
+                       "CMP result.kbuffer[1].xy, -segment.y, nearest, kbuffer[1];\n"
+                       "MAX segment.x, segment.x, 0.0;\n"
+                       "CMP segment.x, -kbuffer[1].z, segment.x, 0.0;\n"
+                       "MUL result.kbuffer[2].z, segment.x, kbuffer[1].w;\n"
+                       "ADD segment.x, nearest.y, kbuffer[1].y;\n"
+                       "MAD result.kbuffer[2].x, segment.x, {}, {};\n"
+                       "SUB segment.x, nearest.y, kbuffer[1].y;\n"
+                       "ABS segment.y, segment.x;\n"
+                       "MAX segment.z, segment.y, {};\n"
+                       "MUL result.kbuffer[2].w, segment.z, {};\n"
+                       "ADD segment.y, segment.y, {};\n"
+                       "RCP segment.y, segment.y;\n"
+                       "MUL segment.x, segment.x, segment.y;\n"
+                       "MAD result.kbuffer[2].y, segment.x, {}, {};\n",
                        place.sum_scale / scale,
                        place.sum_offset - 2.0 * CodedScalar::offset * place.sum_scale / scale,
                        Packed::least_difference * scale, Packed::change_range / scale,
@@ -72,38 +103,10 @@ static std::string make_lookup(TableSize table)
 
 std::string make_volume_program(int k, TableSize table)
 {
-    std::string text = header;
-    text +=
-        fmt::format("# Puts in order what is no more than {} places from where it belongs.\n", k);
-    text += make_take_nearest(k, first_waiting);
-    text += "TEMP tag, segment, place, optics, whole, depth, weight;\n"
-            "FLR tag.x, nearest.y;\n"
-            "SUB nearest.y, nearest.y, tag.x;\n"
-            "ADD result.kbuffer[1].z, kbuffer[1].z, tag.x;\n"
-            // One that comes too late is the end of no segment: the farthest stays.
-            "SUB segment.x, nearest.x, kbuffer[1].x;\n"
-            "CMP result.kbuffer[1].x, segment.x, kbuffer[1].x, nearest.x;\n"
-            "CMP result.kbuffer[1].y, segment.x, kbuffer[1].y, nearest.y;\n"
-            "MAX segment.x, segment.x, 0.0;\n"
-            "CMP segment.x, -kbuffer[1].z, segment.x, 0.0;\n"
-            "MUL segment.x, segment.x, kbuffer[1].w;\n";
-    text += make_lookup(table);
-    text += "MUL depth.x, optics.w, segment.x;\n";
-    text += make_opacity_program();
-    text += fmt::format("SUB weight.w, 1.0, kbuffer[0].w;\n"
-                        "MUL opacity.xy, opacity, weight.w;\n"
-                        "ADD result.kbuffer[0].w, kbuffer[0].w, opacity.x;\n"
-                        "MUL weight.x, opacity.x, {};\n"
-                        "MUL weight.y, opacity.y, segment.w;\n"
-                        "MUL weight.z, weight.y, -0.5;\n"
-                        "FLR whole.xyz, optics;\n"
-                        "SUB optics.xyz, optics, whole;\n"
-                        "MAD optics.xyz, optics, weight.y, weight.z;\n"
-                        "MAD optics.xyz, whole, weight.x, optics;\n"
-                        "ADD result.kbuffer[0].xyz, kbuffer[0], optics;\n"
-                        "END\n",
-                        1.0 / PackedSegmentTexture::color_steps);
-    return text;
+    return header +
+           fmt::format("# Puts in order what is no more than {} places from where it belongs.\n",
+                       k) +
+           make_composite() + make_take_nearest(k, first_waiting) + make_segment(table) + "END\n";
 }
 
 std::string make_volume_shader(int cuts)
@@ -122,12 +125,17 @@ void start(vec4 entry0, vec4 entry1)
     front = entry1;
 }
 
+void add_optics(vec4 optics, vec3 change, float segment)
+{
+    vec2 shares = (1.0 - color.a) * opacity(0.5 * optics.a * segment);
+    color += vec4(optics.rgb * shares.x + change * shares.y, shares.x);
+}
+
 void add_segment(float from, float to, float segment)
 {
     vec3 change;
     vec4 optics = look_up(from, to, change);
-    vec2 shares = (1.0 - color.a) * opacity(0.5 * optics.a * segment);
-    color += vec4(optics.rgb * shares.x + change * shares.y, shares.x);
+    add_optics(optics, change, segment);
 }
 
 void add(vec2 fragment)

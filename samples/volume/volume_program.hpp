@@ -6,7 +6,13 @@
 //     1     depth and scalar (a CodedScalar without its tag) of the last fragment that left those
 //           that wait, the front end of the next segment; how many times the ray is inside the
 //           grid there; the length of the pixel's ray from depth 0 to 1
-//     2...  fragments that wait, two an entry
+//     2     the last segment, which is composited with the next fragment: its texel's place, its
+//           length, and its range, by which the change of color is multiplied
+//     3...  fragments that wait, two an entry
+//
+// (The two parts of the program, to put a fragment among those that wait, and to look a segment up
+// and composite it, are long chains of operations. That one does not need what the other has found
+// just now lets a processor work on both at once.)
 //
 // All are 0 at first, but the length. Segments of which the front end is outside of the grid add
 // nothing.
@@ -37,7 +43,8 @@ std::string make_volume_program(int k, TableSize table);
 /// The same in GLSL 3.30, for fragments that come in order: declares
 ///
 ///     void start(vec4 entry0, vec4 entry1)
-///     void add(vec2 fragment)    depth, CodedScalar
+///     void add_optics(vec4 optics, vec3 change, float segment)    as look_up gives them, length
+///     void add(vec2 fragment)                                     depth, CodedScalar
 ///     vec4 color;                entry 0
 ///     vec4 front;                entry 1
 ///
