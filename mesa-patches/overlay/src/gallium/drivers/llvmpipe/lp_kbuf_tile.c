@@ -190,6 +190,8 @@ lp_kbuf_tile_set_state(struct lp_rasterizer_task *task)
          kbuf->num_color_buffers != tile->kbuf->num_color_buffers)))
       lp_kbuf_tile_end(tile);
    tile->bypassed = !kbuf;
+   /* Blocks of the tile are found without help. */
+   task->nr_cbufs = kbuf ? 0 : task->scene->fb.nr_cbufs;
 
    if (kbuf) {
       tile->kbuf = kbuf;
