@@ -201,7 +201,7 @@ TEST(CommandLine, IsosurfaceRefusesBadInput)
         {{"--smoothing", "1.5"}, "--smoothing"},
         {{"--background", "1,1"}, "--background"},
         {{"--background", "1,1,2"}, "--background"},
-        {{"--distance", "0.5"}, "--distance"},
+        {{"--distance", "-0.5"}, "--distance"},
         {{"--azimuth", "nan"}, "--azimuth"},
         {{"--count", "1"}, "--count"},
         {{"--surfaces-out", "/no/such/place.pfm"}, "/no/such"},

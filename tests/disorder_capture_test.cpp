@@ -49,7 +49,7 @@ protected:
     {
         kb::SortedFaces faces(context_->gl(), mesh, {0.0F, 1.0F});
         faces.sort(camera(), size);
-        auto disorder = kb::capture_disorder(context_->gl(), faces, camera(), size);
+        auto disorder = kb::capture_disorder(context_->gl(), faces, size);
         EXPECT_TRUE(disorder) << disorder.error().message;
         return disorder ? *disorder : kb::Disorder();
     }

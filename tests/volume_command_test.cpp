@@ -66,7 +66,7 @@ TEST(VolumeCommand, RefusesBadOptions)
         {{"--tolerance", "nan"}, "--tolerance"},
         {{"--tolerance", "0.1", "--all-faces"}, "--all-faces"},
         {{"--cubes", "0"}, "--cubes"},
-        {{"--distance", "0"}, "--distance"},
+        {{"--distance", "-1"}, "--distance"},
         {{"--azimuth", "nan"}, "--azimuth"},
         {{"--background", "1,2,3"}, "--background"},
         {{"--float-out", "/no/such/place.pfm"}, "/no/such"},

@@ -31,15 +31,14 @@ public:
 
     void sort(const OrbitCamera &camera, Size size) override { faces_.sort(camera, size); }
 
-    void draw(const OrbitCamera &camera, Size size) const override
+    void draw(const OrbitCamera &, Size size) const override
     {
-        use_face_program(gl_, program_, camera, size);
-        faces_.draw();
+        draw_faces(gl_, program_, faces_, size);
     }
 
-    Result<Disorder> capture_disorder(const OrbitCamera &camera, Size size) const override
+    Result<Disorder> capture_disorder(const OrbitCamera &, Size size) const override
     {
-        return kb::capture_disorder(gl_, faces_, camera, size);
+        return kb::capture_disorder(gl_, faces_, size);
     }
 
     Medium medium() const override { return Medium::grid; }

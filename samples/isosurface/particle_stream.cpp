@@ -119,7 +119,8 @@ public:
         if (!program)
             return program.error();
         // A particle makes one fragment of a pixel at most.
-        return kb::capture_disorder(gl_, size, count(), [&] { draw_with(*program, camera, size); });
+        return kb::capture_disorder(gl_, size, count(), GL_LESS,
+                                    [&] { draw_with(*program, camera, size); });
     }
 
     Medium medium() const override { return Medium::particles; }

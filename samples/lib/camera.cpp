@@ -24,7 +24,7 @@ glm::mat4 OrbitCamera::projection(Size size) const
     if (aspect < 1.0F)
         tangent /= aspect; // The field of view is the narrower side's: here the horizontal one.
     // As tight about the unit sphere as it gets, for the precision of depth.
-    const float near_plane = std::max(distance - 1.01F, 0.01F);
+    const float near_plane = std::max(distance - 1.01F, nearest);
     return glm::perspective(2.0F * std::atan(tangent), aspect, near_plane, distance + 1.01F);
 }
 

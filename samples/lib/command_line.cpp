@@ -102,7 +102,7 @@ void add_turning_options(CLI::App &app, OrbitCamera &camera)
 void add_camera_options(CLI::App &app, OrbitCamera &camera)
 {
     add_turning_options(app, camera);
-    add_number_option(app, "--distance", camera.distance, 1.02, 20.0, "LENGTH",
+    add_number_option(app, "--distance", camera.distance, 0.0, 20.0, "LENGTH",
                       "Of the eye from the middle of the scene, which has radius 1");
     add_number_option(app, "--field-of-view", camera.field_of_view, 1.0, 120.0, "DEG",
                       "Of the shorter side of the picture");

@@ -35,12 +35,13 @@ void append_layers(const Gl &gl, const DepthPeeling &peeling, Arrivals &pixels)
     }
 }
 
-Result<Arrivals> capture_arrivals(const Gl &gl, Size size, std::size_t most_layers,
+Result<Arrivals> capture_arrivals(const Gl &gl, Size size, std::size_t most_layers, GLenum nearer,
                                   const std::function<void()> &draw)
 {
     PeelingLayers layers;
     layers.size = size;
     layers.count = layers_a_pass;
+    layers.func = nearer;
     layers.color_formats = {GL_R32UI};
     auto peeling = DepthPeeling::make(gl, layers);
     if (!peeling)
@@ -77,10 +78,10 @@ Result<Arrivals> capture_arrivals(const Gl &gl, Size size, std::size_t most_laye
 
 } // namespace
 
-Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t most_layers,
+Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t most_layers, GLenum nearer,
                                   const std::function<void()> &draw)
 {
-    const auto pixels = capture_arrivals(gl, size, most_layers, draw);
+    const auto pixels = capture_arrivals(gl, size, most_layers, nearer, draw);
     if (!pixels)
         return pixels.error();
     Disorder disorder;
@@ -89,17 +90,14 @@ Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t most_laye
     return disorder;
 }
 
-Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, const OrbitCamera &camera,
-                                  Size size)
+Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, Size size)
 {
     const auto program = make_face_program(gl, arrival_shader);
     if (!program)
         return program.error();
     // A face makes one fragment of a pixel at most.
-    return capture_disorder(gl, size, faces.order().size(), [&] {
-        use_face_program(gl, *program, camera, size);
-        faces.draw();
-    });
+    return capture_disorder(gl, size, faces.order().size(), GL_GREATER,
+                            [&] { draw_faces(gl, *program, faces, size); });
 }
 
 } // namespace kb

@@ -23,14 +23,13 @@ void main()
 )";
 
 /// The disorder of the fragments that `draw` draws by one command and a program that ends with
-/// arrival_shader. It is exact: depth peeling with continuation puts all fragments of a pixel in
-/// depth order, equal depths in the order in which they arrive. A pixel gets no more than
-/// `most_layers` of them.
-Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t most_layers,
+/// arrival_shader; `nearer` compares depths. It is exact: depth peeling with continuation puts all
+/// fragments of a pixel in depth order, equal depths in the order in which they arrive. A pixel
+/// gets no more than `most_layers` of them.
+Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t most_layers, GLenum nearer,
                                   const std::function<void()> &draw);
 
-/// That of all faces, in the order of their last sort, which was for this camera.
-Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, const OrbitCamera &camera,
-                                  Size size);
+/// That of all faces, in the order of their last sort, for its camera.
+Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, Size size);
 
 } // namespace kb

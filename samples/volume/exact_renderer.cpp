@@ -101,13 +101,13 @@ public:
                                 0);
     }
 
-    Status draw(const SortedFaces &faces, const OrbitCamera &camera) override
+    Status draw(const SortedFaces &faces) override
     {
         sums_[0].clear();
         passes_ = 0;
         Status status = peeling_.restart();
         for (bool more = true; status && more;) {
-            draw_layers(faces, camera);
+            draw_layers(faces);
             add_layers();
             ++passes_;
             more = peeling_.overflow();
@@ -166,12 +166,11 @@ private:
         gl_.ActiveTexture(GL_TEXTURE0);
     }
 
-    void draw_layers(const SortedFaces &faces, const OrbitCamera &camera) const
+    void draw_layers(const SortedFaces &faces) const
     {
         peeling_.clear();
-        use_face_program(gl_, faces_, camera, size_);
         gl_.Enable(GL_DEPTH_PEELING_MESA);
-        faces.draw();
+        draw_faces(gl_, faces_, faces, size_);
         gl_.Disable(GL_DEPTH_PEELING_MESA);
     }
 
@@ -220,6 +219,7 @@ Result<std::unique_ptr<VolumeRenderer>> make_exact_renderer(const Gl &gl,
     PeelingLayers layers;
     layers.size = settings.size;
     layers.count = settings.k;
+    layers.func = GL_GREATER;
     layers.color_formats = {GL_RG32F};
     auto peeling = DepthPeeling::make(gl, layers);
     if (!peeling)

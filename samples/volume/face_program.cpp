@@ -38,9 +38,12 @@ static constexpr const char *fragment_shader_start = R"(
 in float scalar;
 in float code;
 
+uniform float nearest_depth; // What is nearer stands for the eye.
+
 float eye_depth()
 {
-    return 1.0 / gl_FragCoord.w;
+    float depth = 1.0 / gl_FragCoord.w;
+    return depth < nearest_depth ? 1e-30 : depth;
 }
 
 float ray_distance()
@@ -71,12 +74,27 @@ Result<Program> make_face_program(const Gl &gl, const std::string &fragment_shad
                          start + ray_length_shader + fragment_shader_start + fragment_shader);
 }
 
-void use_face_program(const Gl &gl, const Program &program, const OrbitCamera &camera, Size size)
+/// The depth of clip coordinates is that of the near plane everywhere.
+static glm::mat4 reversed_projection(const OrbitCamera &camera, Size size)
 {
+    glm::mat4 projection = camera.projection(size);
+    const float near_plane = projection[3][2] / (projection[2][2] - 1.0F);
+    for (int column = 0; column < 4; ++column)
+        projection[column][2] = column == 3 ? near_plane : 0.0F;
+    return projection;
+}
+
+void draw_faces(const Gl &gl, const Program &program, const SortedFaces &faces, Size size)
+{
+    const OrbitCamera &camera = faces.camera();
     program.use();
-    const glm::mat4 matrix = camera.projection(size) * camera.view();
+    const glm::mat4 matrix = reversed_projection(camera, size) * camera.view();
     gl.UniformMatrix4fv(program.uniform("view_projection"), 1, GL_FALSE, glm::value_ptr(matrix));
+    gl.Uniform1f(program.uniform("nearest_depth"), faces.nearest_depth());
     set_rays(gl, program, camera, size);
+    gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    faces.draw();
+    gl.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
 void set_rays(const Gl &gl, const Program &program, const OrbitCamera &camera, Size size)

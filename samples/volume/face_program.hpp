@@ -4,7 +4,6 @@
 
 #pragma once
 
-#include "camera.hpp"
 #include "gl_objects.hpp"
 #include "sorted_faces.hpp"
 
@@ -24,7 +23,7 @@ struct CodedScalar {
 /// A program that draws SortedFaces. `fragment_shader` is GLSL 3.30 without its #version line; it
 /// may call
 ///
-///     float eye_depth()      of the fragment, along the axis of the view
+///     float eye_depth()      of the fragment, along the axis of the view: more than 0
 ///     float ray_distance()   of the fragment from the eye, along the ray
 ///     float tagged_scalar()  the scalar from 0 to 1; + 4 where the ray enters the grid, - 4 where
 ///                            it leaves it
@@ -37,8 +36,10 @@ Result<Program> make_face_program(const Gl &gl, const std::string &fragment_shad
 /// it needs.
 extern const char *const ray_length_shader;
 
-/// Makes the program current and sets what it needs to know of the view.
-void use_face_program(const Gl &gl, const Program &program, const OrbitCamera &camera, Size size);
+/// Draws the faces by the program, for the view that they are sorted for. Of depths GL_GREATER is
+/// the nearer one: they are the near plane's over the fragment's, which floats tell apart near and
+/// far alike.
+void draw_faces(const Gl &gl, const Program &program, const SortedFaces &faces, Size size);
 
 /// Sets the uniform of ray_length() of the current program.
 void set_rays(const Gl &gl, const Program &program, const OrbitCamera &camera, Size size);

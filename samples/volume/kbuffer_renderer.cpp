@@ -141,19 +141,18 @@ public:
                                 0);
     }
 
-    Status draw(const SortedFaces &faces, const OrbitCamera &camera) override
+    Status draw(const SortedFaces &faces) override
     {
         kbuffer_.bind();
         gl_.Disable(GL_DEPTH_TEST);
         gl_.Enable(GL_KBUFFER_PROGRAM_MESA);
         clear_.bind();
         rays_.use();
-        set_rays(gl_, rays_, camera, size_);
+        set_rays(gl_, rays_, faces.camera(), size_);
         draw_full_screen(gl_, empty_);
         table_.bind(0);
         program_.bind();
-        use_face_program(gl_, faces_, camera, size_);
-        faces.draw();
+        draw_faces(gl_, faces_, faces, size_);
         gl_.Disable(GL_KBUFFER_PROGRAM_MESA);
         flush();
         return check_gl(gl_, "drawing the volume");

@@ -81,8 +81,7 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
         kb::Status drawn = kb::ok;
         const double sort =
             kb::milliseconds(gl, [&] { faces.sort(options.scene.camera, options.size); });
-        const double rest =
-            kb::milliseconds(gl, [&] { drawn = (*renderer)->draw(faces, options.scene.camera); });
+        const double rest = kb::milliseconds(gl, [&] { drawn = (*renderer)->draw(faces); });
         report.frames.push_back({sort, rest});
         return drawn;
     };

@@ -2,6 +2,7 @@
 
 #include "sorted_faces.hpp"
 
+#include "eye_place.hpp"
 #include "radix_sort.hpp"
 
 #include <glm/geometric.hpp>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <iterator>
 #include <limits>
 #include <thread>
 
@@ -132,6 +134,8 @@ SortedFaces::SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range, 
         }
     }
 
+    vertices_.resize(vertices_.size() + 3);
+
     const auto processors =
         static_cast<std::size_t>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U));
     // Inner faces are not drawn, but cells are in order by them.
@@ -143,9 +147,7 @@ SortedFaces::SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range, 
                            {}});
 
     gl.BindVertexArray(array_.id());
-    gl.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_.id());
-    gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(glm::vec4)),
-                  vertices_.data(), GL_STATIC_DRAW);
+    upload_vertices();
     gl.VertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 0, nullptr);
     gl.EnableVertexAttribArray(0);
     gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_.id());
@@ -165,6 +167,53 @@ void SortedFaces::project(const OrbitCamera &camera, Size size)
     }
 }
 
+void SortedFaces::upload_vertices() const
+{
+    gl_->BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_.id());
+    gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(glm::vec4)),
+                    vertices_.data(), GL_STATIC_DRAW);
+}
+
+/// Outside of the grid's sphere there is nothing near the eye. Inside, the near plane must be
+/// nearer than any face: rays that lose one do not know any more whether they are in the grid.
+void SortedFaces::look_about(const OrbitCamera &camera, Size size)
+{
+    camera_ = camera;
+    nearest_depth_ = 0.0F;
+    eye_is_inside_ = false;
+    if (camera.distance >= 1.02F)
+        return;
+    const glm::vec3 eye(glm::inverse(camera.view())[3]);
+    const EyePlace place = find_eye(eye, std::span(vertices_).first(vertices_.size() - 3),
+                                    triangles_, interior_count_, boundary_tag);
+    const glm::mat4 projection = camera.projection(size);
+    const glm::vec2 slopes(1.0F / projection[0][0], 1.0F / projection[1][1]);
+    // The least depth at this distance is in the corners. The limits are those of floats, and of
+    // the precision of depth.
+    const float free =
+        std::clamp(static_cast<float>(place.clearance) / std::sqrt(1.0F + glm::dot(slopes, slopes)),
+                   1e-5F, 1.0F);
+    camera_.nearest = 0.4F * free;
+    if (!place.scalar)
+        return;
+    eye_is_inside_ = true;
+    nearest_depth_ = 0.8F * free;
+    enter_at_eye(0.6F * free, slopes, *place.scalar);
+}
+
+/// One triangle over all of the picture.
+void SortedFaces::enter_at_eye(float depth, glm::vec2 slopes, float scalar)
+{
+    const glm::mat4 to_scene = glm::inverse(camera_.view());
+    auto vertex = vertices_.end() - 3;
+    for (const glm::vec2 corner : {glm::vec2(-2.0F, -2.0F), {5.0F, -2.0F}, {-2.0F, 5.0F}}) {
+        const glm::vec3 place(to_scene * glm::vec4(corner * slopes * depth, -depth, 1.0F));
+        *vertex++ = glm::vec4(place, scalar + boundary_tag);
+    }
+    gl_->BindVertexArray(array_.id());
+    upload_vertices();
+}
+
 /// A face that reaches behind the eye has no place on the picture: what side the eye is on says how
 /// it sees it.
 static Seen see_near_eye(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c, glm::vec3 eye)
@@ -180,7 +229,10 @@ Seen SortedFaces::see(const glm::uvec3 &triangle, glm::vec3 eye, Size size) cons
     const Projected &a = projected_[triangle.x];
     const Projected &b = projected_[triangle.y];
     const Projected &c = projected_[triangle.z];
-    if (!(std::min({a.depth, b.depth, c.depth}) > 0.0F))
+    if (std::max({a.depth, b.depth, c.depth}) <= 0.0F)
+        return Seen::never;
+    // What is very near may be too far aside for its place on the picture.
+    if (!(std::min({a.depth, b.depth, c.depth}) > 0.01F))
         return see_near_eye(vertices_[triangle.x], vertices_[triangle.y], vertices_[triangle.z],
                             eye);
     const Pixels columns(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), size.width);
@@ -221,6 +273,7 @@ void SortedFaces::choose(Chosen &chosen, glm::vec3 eye, Size size)
 
 void SortedFaces::sort(const OrbitCamera &camera, Size size)
 {
+    look_about(camera, size);
     project(camera, size);
     const glm::vec3 eye(glm::inverse(camera.view())[3]);
     std::vector<std::future<void>> work;
@@ -243,8 +296,13 @@ void SortedFaces::sort(const OrbitCamera &camera, Size size)
         std::erase_if(order_, [this](std::uint32_t place) { return place >= drawn_count_; });
     }
 
-    std::vector<glm::uvec3> sorted(order_.size());
-    std::transform(order_.begin(), order_.end(), sorted.begin(),
+    std::vector<glm::uvec3> sorted;
+    sorted.reserve(order_.size() + 1);
+    if (eye_is_inside_) {
+        const auto end = static_cast<std::uint32_t>(vertices_.size());
+        sorted.emplace_back(end - 3, end - 2, end - 1);
+    }
+    std::transform(order_.begin(), order_.end(), std::back_inserter(sorted),
                    [this](std::uint32_t place) { return triangles_[place]; });
     gl_->BindVertexArray(array_.id());
     gl_->BufferData(GL_ELEMENT_ARRAY_BUFFER,
@@ -255,8 +313,8 @@ void SortedFaces::sort(const OrbitCamera &camera, Size size)
 void SortedFaces::draw() const
 {
     gl_->BindVertexArray(array_.id());
-    gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * order_.size()), GL_UNSIGNED_INT,
-                      nullptr);
+    const std::size_t drawn = order_.size() + (eye_is_inside_ ? 1 : 0);
+    gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * drawn), GL_UNSIGNED_INT, nullptr);
 }
 
 } // namespace kb

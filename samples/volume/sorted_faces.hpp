@@ -39,8 +39,15 @@ public:
     /// Sorts for a view, and leaves out what covers no center of a pixel in it.
     void sort(const OrbitCamera &camera, Size size);
 
-    /// Draws the faces in the order of the last sort, by one command.
+    /// Draws the faces in the order of the last sort, by one command. If the eye is inside of the
+    /// grid there is one more in front of them, the entry of all rays.
     void draw() const;
+
+    /// Of the last sort, with a near plane that cuts off nothing of a face.
+    const OrbitCamera &camera() const { return camera_; }
+
+    /// What is drawn with less depth is the entry that stands for the eye.
+    float nearest_depth() const { return nearest_depth_; }
 
     /// Of the faces that are drawn, if they can be seen.
     std::size_t count() const { return drawn_count_; }
@@ -69,6 +76,9 @@ private:
     void project(const OrbitCamera &camera, Size size);
     Seen see(const glm::uvec3 &triangle, glm::vec3 eye, Size size) const;
     void choose(Chosen &chosen, glm::vec3 eye, Size size);
+    void look_about(const OrbitCamera &camera, Size size);
+    void enter_at_eye(float depth, glm::vec2 slopes, float scalar);
+    void upload_vertices() const;
     float key_of(const glm::uvec3 &triangle) const;
 
     const Gl *gl_;
@@ -76,7 +86,8 @@ private:
     VertexArray array_;
     Buffer vertex_buffer_;
     Buffer index_buffer_;
-    std::vector<glm::vec4> vertices_; ///< Those of the interior, then those of the boundary.
+    /// Those of the interior, those of the boundary, and three of the entry at the eye.
+    std::vector<glm::vec4> vertices_;
     std::vector<glm::uvec3> triangles_;
     std::size_t interior_count_;
     std::size_t drawn_count_;
@@ -87,6 +98,9 @@ private:
     std::vector<float> keys_;    ///< Of all parts.
     std::vector<std::uint32_t> keyed_;
     std::vector<Seen> seen_;
+    OrbitCamera camera_;
+    float nearest_depth_ = 0.0F;
+    bool eye_is_inside_ = false;
     std::vector<std::uint32_t> order_;
 };
 

@@ -19,7 +19,7 @@ static Result<ImageRgbaF> draw_exact(const Gl &gl, const VolumeOptions &options,
         return renderer.error();
     SortedFaces faces(gl, scene.faces, scene.range);
     faces.sort(options.scene.camera, options.size);
-    if (auto drawn = (*renderer)->draw(faces, options.scene.camera); !drawn)
+    if (auto drawn = (*renderer)->draw(faces); !drawn)
         return drawn.error();
     return read_color(gl, (*renderer)->framebuffer(), options.size);
 }
@@ -28,7 +28,7 @@ Result<DisorderReport> measure_disorder(const Gl &gl, const VolumeOptions &optio
                                         const VolumeScene &scene, const SortedFaces &faces,
                                         const ImageRgbaF &picture)
 {
-    auto fragments = capture_disorder(gl, faces, options.scene.camera, options.size);
+    auto fragments = capture_disorder(gl, faces, options.size);
     if (!fragments)
         return fragments.error();
     DisorderReport report{std::move(*fragments), {}};

@@ -2,7 +2,6 @@
 
 #pragma once
 
-#include "camera.hpp"
 #include "sorted_faces.hpp"
 #include "transfer_function.hpp"
 
@@ -26,8 +25,8 @@ class VolumeRenderer
 public:
     virtual ~VolumeRenderer() = default;
 
-    /// The faces are sorted for this camera.
-    virtual Status draw(const SortedFaces &faces, const OrbitCamera &camera) = 0;
+    /// For the camera that the faces are sorted for.
+    virtual Status draw(const SortedFaces &faces) = 0;
 
     /// The picture is color attachment 0 of this framebuffer: the background is in it, alpha is 1
     /// less the transmittance.

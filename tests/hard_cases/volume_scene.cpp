@@ -97,7 +97,7 @@ ImageRgbaF VolumeDrawer::draw(const FaceMesh &mesh)
                       method_.take_flaw() == Flaw::none ? mesh : lose_nearest_face(mesh, camera_),
                       ScalarRange{0.0F, 1.0F});
     faces.sort(camera_, size_);
-    must(renderer_->draw(faces, camera_));
+    must(renderer_->draw(faces));
     const ImageRgbaF picture = read_color(gl_, renderer_->framebuffer(), size_);
     must(check_gl(gl_, "drawing a volume"));
     return picture;

@@ -186,9 +186,9 @@ TEST_F(AgainstIntegrator, OneCell)
                   "25", "--transfer-points", "0 1 0 0 0.5; 0.5 0 1 0 4; 1 0 0 1 1"}));
 }
 
-TEST_F(AgainstIntegrator, HolesAreEmpty)
+/// A box without its middle, and without a corner: rays leave it and enter again.
+TetGrid grid_with_holes()
 {
-    // A box without its middle, and without a corner: rays leave it and enter again.
     TetGrid grid = make_tet_grid({.cubes = 4});
     std::erase_if(grid.cells, [&](const glm::uvec4 &cell) {
         glm::vec3 middle(0.0F);
@@ -198,10 +198,46 @@ TEST_F(AgainstIntegrator, HolesAreEmpty)
             std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)}) < 0.5F;
         return inner || (middle.x > 0.2F && middle.y > 0.2F && middle.z > 0.2F);
     });
-    const auto path = directory_.write("holes.vtk", vtk_file(grid, VtkForm::binary));
+    return grid;
+}
+
+TEST_F(AgainstIntegrator, HolesAreEmpty)
+{
+    const auto path = directory_.write("holes.vtk", vtk_file(grid_with_holes(), VtkForm::binary));
     for (const char *azimuth : {"30", "200"})
         expect_right(draw({"--exact", "--grid", path, "--repair", "--size", "80x80", "--azimuth",
                            azimuth, "--elevation", "35"}));
+}
+
+TEST_F(AgainstIntegrator, TheEyeMayBeInside)
+{
+    for (const std::string driver : {"llvmpipe", "softpipe"}) {
+        // As above, k is large enough.
+        for (const std::vector<std::string> &way :
+             {std::vector<std::string>{"--exact", "--k", "24"}, {"--k", "32"}}) {
+            for (const char *distance : {"0", "0.41", "0.95"}) {
+                SCOPED_TRACE(fmt::format("{} {} {}", driver, way.front(), distance));
+                std::vector<std::string> arguments{
+                    "--cubes",    "8",     "--size",      driver == "llvmpipe" ? "96x80" : "32x24",
+                    "--azimuth",  "33",    "--elevation", "12",
+                    "--distance", distance};
+                arguments.insert(arguments.begin(), way.begin(), way.end());
+                expect_right(draw(arguments, driver));
+            }
+        }
+    }
+}
+
+TEST_F(AgainstIntegrator, TheEyeMayBeInAHole)
+{
+    const auto path = directory_.write("holes.vtk", vtk_file(grid_with_holes(), VtkForm::binary));
+    // In the middle one; in the one of the corner, which is open, its walls beside the eye.
+    for (const auto &[distance, elevation] : {std::pair("0.1", "20"), {"0.55", "35"}})
+        for (const char *azimuth : {"45", "-135"})
+            for (const char *way : {"--exact", "--order=cells"})
+                expect_right(
+                    draw({way, "--k", "32", "--grid", path, "--repair", "--size", "64x64",
+                          "--azimuth", azimuth, "--elevation", elevation, "--distance", distance}));
 }
 
 TEST_F(AgainstIntegrator, CellsWithoutVolumeChangeNoBit)
