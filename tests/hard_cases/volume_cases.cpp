@@ -2,10 +2,10 @@
 //
 // Volumes: small and large optical depths, segments without length, thin cells, pre-integration.
 
+#include "box_chords.hpp"
 #include "cases.hpp"
 #include "volume_scene.hpp"
 
-#include "box.hpp"
 #include "gl_scene.hpp"
 
 #include <fmt/format.h>
@@ -243,60 +243,6 @@ Outcome range_of_exponential(const Gl &gl, Method &method, const Shape &shape)
     return outcome;
 }
 
-/// What one pixel of the box is to show.
-struct Chord {
-    double least; ///< Lengths: of rays moved by as much as corners are snapped.
-    double greatest;
-    double middle;
-    double volume_factor; ///< From a length to the pixel's part of the volume.
-};
-
-class BoxChords
-{
-public:
-    BoxChords(const TetGrid &box, Size size) : view_(integrator::make_view(oblique, size))
-    {
-        for (const glm::vec3 &point : box.points)
-            half_side_ = std::max(half_side_, static_cast<double>(point.x));
-    }
-
-    double volume() const { return std::pow(2.0 * half_side_, 3); }
-
-    Chord at(int x, int y) const
-    {
-        const double snap = 1.0 / 256.0;
-        const glm::dvec2 center(x + 0.5, y + 0.5);
-        const auto [in, out] = cross(center);
-        Chord chord{};
-        chord.least = chord.greatest = chord.middle = length(center);
-        // The integral of w^2 from in to out is (out - in) times this; without a chord, about.
-        const double square = chord.middle > 0.0
-                                  ? (in * in + in * out + out * out) / 3.0
-                                  : static_cast<double>(oblique.distance * oblique.distance);
-        chord.volume_factor = view_.pixel_area() * square / per_depth(center);
-        for (const glm::dvec2 corner : {glm::dvec2(-snap, -snap), glm::dvec2(snap, -snap),
-                                        glm::dvec2(-snap, snap), glm::dvec2(snap, snap)}) {
-            chord.least = std::min(chord.least, length(center + corner));
-            chord.greatest = std::max(chord.greatest, length(center + corner));
-        }
-        return chord;
-    }
-
-private:
-    integrator::Interval cross(glm::dvec2 place) const
-    {
-        return cross_box(view_, view_.device_coordinates(place), half_side_);
-    }
-    double per_depth(glm::dvec2 place) const
-    {
-        return view_.length_per_depth(view_.device_coordinates(place));
-    }
-    double length(glm::dvec2 place) const { return cross(place).depth() * per_depth(place); }
-
-    integrator::View view_;
-    double half_side_ = 0.0;
-};
-
 /// The number of cells that the deepest ray goes through.
 std::size_t deepest(const TetGrid &grid, const ScalarField &field, Size size)
 {
@@ -321,7 +267,7 @@ Outcome thin_cells(const Gl &gl, Method &method, const Shape &shape)
     for (const CubeSplit split : {CubeSplit::five, CubeSplit::six, CubeSplit::twenty_four}) {
         const TetGrid box = make_box(split);
         const ScalarField field = unit_field(box);
-        const BoxChords chords(box, shape.size);
+        const BoxChords chords(box, oblique, shape.size);
         const auto picture = VolumeDrawer(gl, method, shape, {white(extinction), oblique})
                                  .draw(make_face_mesh(box, field));
         const auto segments = static_cast<double>(deepest(box, field, shape.size));
