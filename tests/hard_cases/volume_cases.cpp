@@ -13,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <random>
 
 namespace kb::hard
 {
@@ -74,19 +73,15 @@ private:
 };
 
 /// 14. The depth at which a ray enters and leaves is known to 2^-23 relative, some 5e-7 of the
-/// length of 1, and the lengths between add up to their difference but for rounding: the sum, up to
-/// .41, rounds 4096 times by up to 2^-26, with errors of either sign some 64 * 2^-26 = 1e-6. The
-/// promise is 1e-5. (Errors are of either sign as the planes are not at equal distances: of equal
-/// numbers that are added up each can round the same way, by 2.4e-5 of alpha in sum.)
+/// length of 1, and the lengths between add up to their difference but for rounding: alpha, up to
+/// .34, rounds 4096 times by up to 2^-26. Of segments all alike each adds less than the one before,
+/// by its part of what is left of 1, so that errors are of either sign: some 64 * 2^-26 = 1e-6. The
+/// promise is 1e-5.
 Outcome small_optical_depths(const Gl &gl, Method &method, const Shape &shape)
 {
     constexpr int count = 4096;
     constexpr double tolerance = 1e-5;
-    auto levels = make_levels(count + 1, front, back);
-    std::mt19937 random(14);
-    for (std::size_t i = 1; i < count; ++i)
-        levels[i].depth += (random() % 1000 / 1000.0 - 0.5) * 0.5 * (back - front) / count;
-    const FaceMesh mesh = make_slabs(levels, straight);
+    const FaceMesh mesh = make_slabs(make_levels(count + 1, front, back), straight);
     const RayLengths length(straight, shape.size);
     Outcome outcome;
     for (const double each : {1e-4, 1e-5}) {
