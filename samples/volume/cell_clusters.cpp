@@ -23,6 +23,10 @@ constexpr auto no_cell = FaceMesh::no_cell;
 /// Of the deviation that a cluster's first cell allows: the rest is for neighbors that allow less.
 constexpr double usable_share = 0.75;
 
+/// Of the scalars of a cluster in which they go linearly: the table of segments is made for small
+/// differences, as those in cells are.
+constexpr double most_extent = 1.0 / 8.0;
+
 /// A linear function of place.
 struct Linear {
     glm::dvec3 origin;
@@ -36,6 +40,11 @@ struct Interval {
     double low;
     double high;
 };
+
+Interval hull(Interval a, Interval b)
+{
+    return {std::min(a.low, b.low), std::max(a.high, b.high)};
+}
 
 class Clustering
 {
@@ -86,7 +95,7 @@ private:
 
     bool widen(Interval &scalars, Interval more) const
     {
-        const Interval both{std::min(scalars.low, more.low), std::max(scalars.high, more.high)};
+        const Interval both = hull(scalars, more);
         const bool allowed = tolerance_->allows(both.low, both.high);
         if (allowed)
             scalars = both;
@@ -95,13 +104,18 @@ private:
 
     void grow_linear(std::uint32_t seed, Interval scalars)
     {
+        const double extent = std::max(scalars.high - scalars.low, most_extent);
         const Linear linear = linear_of(seed);
         const double deviation =
             usable_share * tolerance_->most_deviation(scalars.low, scalars.high);
         grow(seed, [&](std::uint32_t cell) {
             const Interval own = scalars_of(cell);
-            return is_near(linear, cell, 0.5 * deviation) &&
-                   tolerance_->allows_deviation(own.low, own.high, deviation);
+            const Interval both = hull(scalars, own);
+            if (both.high - both.low > extent || !is_near(linear, cell, 0.5 * deviation) ||
+                !tolerance_->allows_deviation(own.low, own.high, deviation))
+                return false;
+            scalars = both;
+            return true;
         });
     }
 

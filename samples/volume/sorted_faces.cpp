@@ -184,8 +184,9 @@ void SortedFaces::look_about(const OrbitCamera &camera, Size size)
     if (camera.distance >= 1.02F)
         return;
     const glm::vec3 eye(glm::inverse(camera.view())[3]);
-    const EyePlace place = find_eye(eye, std::span(vertices_).first(vertices_.size() - 3),
-                                    triangles_, interior_count_, boundary_tag);
+    const EyePlace place =
+        find_eye(eye, std::span(vertices_).first(vertices_.size() - 3),
+                 std::span(triangles_).first(drawn_count_), interior_count_, boundary_tag);
     const glm::mat4 projection = camera.projection(size);
     const glm::vec2 slopes(1.0F / projection[0][0], 1.0F / projection[1][1]);
     // The least depth at this distance is in the corners. The limits are those of floats, and of

@@ -228,6 +228,20 @@ TEST_F(AgainstIntegrator, TheEyeMayBeInside)
     }
 }
 
+TEST_F(AgainstIntegrator, TheEyeMayBeInsideACluster)
+{
+    // Of a linear field, so that all cells are of about one.
+    TetGrid grid = make_tet_grid({.cubes = 4});
+    grid.fields = {{"linear", {}}};
+    for (const glm::vec3 p : grid.points)
+        grid.fields.front().values.push_back(p.x - 0.5F * p.y + 0.25F * p.z);
+    const auto path = directory_.write("linear.vtk", vtk_file(grid, VtkForm::binary));
+    for (const char *order : {"centroid", "cells"})
+        expect_right(
+            draw({"--k", "8", "--order", order, "--tolerance", "0.001", "--grid", path, "--size",
+                  "64x64", "--azimuth", "33", "--elevation", "12", "--distance", "0.41"}));
+}
+
 TEST_F(AgainstIntegrator, TheEyeMayBeInAHole)
 {
     const auto path = directory_.write("holes.vtk", vtk_file(grid_with_holes(), VtkForm::binary));
