@@ -52,13 +52,18 @@ void main()
 )";
 }
 
+/// Read and written in turns.
+std::array<Texture, 2> make_bounds(const Gl &gl, Size size)
+{
+    return {make_texture_2d(gl, GL_RG32F, size.width, size.height),
+            make_texture_2d(gl, GL_RG32F, size.width, size.height)};
+}
+
 class DualPeeling final : public Renderer
 {
 public:
     DualPeeling(const Gl &gl, Size size, int k, float epsilon)
-        : gl_(gl), front_layers_((k + 1) / 2),
-          back_layers_(k / 2), bounds_{make_texture_2d(gl, GL_RG32F, size.width, size.height),
-                                       make_texture_2d(gl, GL_RG32F, size.width, size.height)},
+        : gl_(gl), front_layers_((k + 1) / 2), back_layers_(k / 2), bounds_(make_bounds(gl, size)),
           layers_(make_texture_2d_array(gl, GL_RGBA8, size.width, size.height, k)),
           framebuffer_(gl), first_(make_geometry_program(gl, "", R"(
 out vec2 bounds;

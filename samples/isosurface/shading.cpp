@@ -139,15 +139,15 @@ Result<ShadingPass> ShadingPass::make(const Gl &gl, const ShadingSettings &setti
     return pass;
 }
 
-static Texture make_surfaces(const Gl &gl, Size size)
+static std::array<Texture, 2> make_surfaces(const Gl &gl, Size size)
 {
-    return make_texture_2d(gl, GL_RG32F, size.width, size.height);
+    return {make_texture_2d(gl, GL_RG32F, size.width, size.height),
+            make_texture_2d(gl, GL_RG32F, size.width, size.height)};
 }
 
 ShadingPass::ShadingPass(const Gl &gl, const ShadingSettings &settings, Programs programs)
-    : settings_(settings), programs_(std::move(programs)),
-      empty_(gl), surfaces_{make_surfaces(gl, settings.size), make_surfaces(gl, settings.size)},
-      framebuffers_{Framebuffer(gl), Framebuffer(gl)}
+    : settings_(settings), programs_(std::move(programs)), empty_(gl),
+      surfaces_(make_surfaces(gl, settings.size)), framebuffers_{Framebuffer(gl), Framebuffer(gl)}
 {
 }
 

@@ -20,7 +20,7 @@ struct OrbitCamera {
     float elevation = 0.0F; ///< Degrees above the xz plane.
     float distance = 2.7F;
     float field_of_view = 45.0F; ///< Degrees, of the shorter side of the picture.
-    float nearest = 0.01F; ///< Depth of the near plane at least, wherever the unit sphere is.
+    float nearest = 0.01F;       ///< Depth of the near plane at least, wherever the sphere is.
 
     glm::mat4 view() const;
     glm::mat4 projection(Size size) const;

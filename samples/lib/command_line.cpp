@@ -110,13 +110,12 @@ void add_camera_options(CLI::App &app, OrbitCamera &camera)
 
 CLI::Option *add_background_option(CLI::App &app, glm::vec3 &background)
 {
+    const auto set = [&background](const std::vector<float> &c) {
+        background = glm::vec3(c[0], c[1], c[2]);
+    };
     return app
-        .add_option_function<std::vector<float>>(
-            "--background",
-            [&background](const std::vector<float> &c) {
-                background = {c[0], c[1], c[2]};
-            },
-            "Red, green and blue from 0 to 1")
+        .add_option_function<std::vector<float>>("--background", set,
+                                                 "Red, green and blue from 0 to 1")
         ->expected(3)
         ->delimiter(',')
         ->check([](const std::string &text) { return check_number(text, 0.0, 1.0); })

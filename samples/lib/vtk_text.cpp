@@ -28,8 +28,8 @@ std::string_view first_word(std::string_view line)
 std::string quoted(std::string_view word)
 {
     std::string text(word.substr(0, 40));
-    std::ranges::replace_if(
-        text, [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
+    const auto is_unprintable = [](unsigned char c) { return c < ' ' || c > '~'; };
+    std::ranges::replace_if(text, is_unprintable, '?');
     return '\'' + text + '\'';
 }
 

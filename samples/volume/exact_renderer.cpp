@@ -81,8 +81,8 @@ public:
                   Program add, Program finish)
         : gl_(gl), size_(settings.size), peeling_(std::move(peeling)), faces_(std::move(faces)),
           add_(std::move(add)), finish_(std::move(finish)),
-          table_(gl, PreintegratedTable(settings.transfer, table_size)), sums_{Sum(gl, size_),
-                                                                               Sum(gl, size_)},
+          table_(gl, PreintegratedTable(settings.transfer, table_size)),
+          sums_({Sum(gl, size_), Sum(gl, size_)}),
           picture_(make_texture_2d(gl, GL_RGBA32F, size_.width, size_.height)), framebuffer_(gl),
           empty_(gl)
     {

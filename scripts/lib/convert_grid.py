@@ -164,7 +164,9 @@ def split_structured_vtk(data):
     shown = np.ones(len(points), bool)
     if (ghosts := data.GetPointGhostArray()) is not None:
         shown = vtk_to_numpy(ghosts) & HIDDEN_POINT == 0
-    return split_structured(points, data.GetDimensions(), shown, point_arrays(data))
+    dimensions = [0, 0, 0]
+    data.GetDimensions(dimensions)  # The form that VTK 9.1 and 9.3 have in common.
+    return split_structured(points, dimensions, shown, point_arrays(data))
 
 
 def split(data):
