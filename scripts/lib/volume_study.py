@@ -37,7 +37,7 @@ SCENES = (
 # Name, form, options of the sample
 OURS = tuple(("kbuffer-program", order, ("--k", k, "--order", order))
              for order in ("centroid", "nearest", "cells") for k in ("6", "12"))
-OURS += tuple(("kbuffer-program", f"{order}, tolerance 0.1",
+OURS += tuple(("kbuffer-program", f"{order} tolerance 0.1",
                ("--k", k, "--order", order, "--tolerance", "0.1"))
               for order in ("centroid", "nearest") for k in ("6", "12"))
 OURS += (("exact", "", ("--exact", "--k", "64")),
