@@ -30,8 +30,11 @@ static ALWAYS_INLINE void
 lp_rast_fetch(const void *data, unsigned size)
 {
 #ifdef __GNUC__
+   /* There may be nothing, of which pointers to parts would be undefined. */
+   const uintptr_t address = (uintptr_t)data;
+
    for (unsigned i = 0; i < size; i += 64)
-      __builtin_prefetch((const char *)data + i);
+      __builtin_prefetch((const void *)(address + i));
 #endif
 }
 
