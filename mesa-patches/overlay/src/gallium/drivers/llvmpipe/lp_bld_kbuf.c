@@ -94,7 +94,8 @@ resources_type(struct gallivm_state *gallivm, LLVMTypeRef jit_resources_type)
 
 /**
  * Texture functions are found by name, which tells the units only: keep those
- * of the fragment shader, which has units of its own, from being found.
+ * of the fragment shader, which has units of its own, from being found.  Those
+ * of a program would be found by a second function of the module.
  */
 static void
 rename_texture_functions(struct gallivm_state *gallivm)
@@ -106,6 +107,7 @@ rename_texture_functions(struct gallivm_state *gallivm)
       size_t len;
       const char *name = LLVMGetValueName2(func, &len);
 
+      assert(strncmp(name, "fs_texfunc_", 11) != 0);
       if (strncmp(name, prefix, sizeof prefix - 1) == 0) {
          char new_name[80];
 

@@ -5,6 +5,8 @@
 
 #include "lp_kbuf_rast.h"
 
+#include "util/u_atomic.h"
+
 #include "lp_kbuf_tile.h"
 #include "lp_rast_priv.h"
 
@@ -14,7 +16,7 @@ lp_kbuf_rasterize_bin(struct lp_rasterizer_task *task,
                       const struct cmd_bin *bin,
                       const lp_rast_cmd_func *dispatch)
 {
-   struct lp_kbuf_tile *tile = task->thread_data.kbuf_tile;
+   struct lp_kbuf_tile *tile = p_atomic_read(&task->thread_data.kbuf_tile);
 
    lp_kbuf_tile_begin(tile, dispatch[LP_RAST_OP_CLEAR_COLOR]);
 

@@ -6,6 +6,7 @@
 #include "lp_kbuf_tile.h"
 
 #include "util/format/u_format.h"
+#include "util/u_atomic.h"
 #include "util/u_math.h"
 #include "util/u_memory.h"
 
@@ -224,7 +225,8 @@ lp_kbuf_tiles_create(struct lp_rasterizer *rast)
       }
       tile->load_block = load_block;
       tile->task = task;
-      task->thread_data.kbuf_tile = tile;
+      /* The thread may be at work, for another context. */
+      p_atomic_set(&task->thread_data.kbuf_tile, tile);
    }
    return true;
 }

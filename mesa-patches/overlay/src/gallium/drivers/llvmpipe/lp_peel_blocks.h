@@ -53,7 +53,7 @@ lp_peel_quad_count(const struct lp_peel_tile *tile, unsigned block,
                    unsigned sample, unsigned quad)
 {
    return lp_peel_sample_counts(tile, block, sample)
-             [quad / lp_peel_group_quads()];
+             [quad / tile->group_quads];
 }
 
 /** All layers of a block, cleared or from memory. */

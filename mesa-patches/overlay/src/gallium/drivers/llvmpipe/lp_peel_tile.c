@@ -5,6 +5,7 @@
 
 #include "lp_peel_tile.h"
 
+#include "util/u_atomic.h"
 #include "util/u_math.h"
 #include "util/u_memory.h"
 
@@ -12,6 +13,7 @@
 #include "lp_peel_parts.h"
 #include "lp_rast_priv.h"
 #include "lp_scene.h"
+#include "lp_state_fs.h"
 
 
 /** Something else may write to the buffers: the counts hold no longer. */
@@ -150,7 +152,8 @@ create_tile(struct lp_rasterizer_task *task)
       tile->task = task;
       tile->load_block = lp_peel_load_block;
       tile->load_last = lp_peel_load_last;
-      task->thread_data.peel_tile = tile;
+      /* The thread may be at work, for another context. */
+      p_atomic_set(&task->thread_data.peel_tile, tile);
    }
    return tile;
 }
@@ -192,7 +195,7 @@ struct lp_peel_tile *
 lp_peel_tile_begin(struct lp_rasterizer_task *task,
                    const lp_rast_cmd_func *dispatch)
 {
-   struct lp_peel_tile *tile = task->thread_data.peel_tile;
+   struct lp_peel_tile *tile = p_atomic_read(&task->thread_data.peel_tile);
    struct lp_peel_parts *parts = task->scene->peel_parts;
 
    tile->dispatch = dispatch;
@@ -237,6 +240,10 @@ lp_peel_tile_set_state(struct lp_peel_tile *tile)
       take_spare(tile);
    tile->counts = (uint32_t *)(tile->data + (size_t)LP_PEEL_TILE_BLOCKS *
                                             tile->block_size);
+
+   const unsigned group_quads = task->state->variant->group_quads;
+   assert(!tile->num_valid || tile->group_quads == group_quads);
+   tile->group_quads = group_quads;
 
    tile->peel = peel;
    tile->last_layer = peel->num_layers - 1;

@@ -26,7 +26,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "gallivm/lp_bld_type.h"
 #include "util/macros.h"
 
 #include "lp_limits.h"
@@ -79,6 +78,7 @@ struct lp_peel_tile
    struct lp_rasterizer_task *task;
    const lp_rast_cmd_func *dispatch;
    const struct lp_rast_peel *peel;  /**< NULL: no block is valid */
+   unsigned group_quads;  /**< of the fragment functions that run */
    unsigned num_valid;  /**< blocks of which there is something */
    int32_t block_farthest[LP_PEEL_TILE_BLOCKS];
    int32_t farthest;        /**< see lp_peel_tile_farthest() */
@@ -95,13 +95,6 @@ struct lp_peel_tile
    uint8_t *spare;    /**< a larger one for data and counts, or NULL */
    size_t reserved;   /**< bytes of the largest one; not the thread's */
 };
-
-/** How many quads a group has, see generate_fragment(). */
-static inline unsigned
-lp_peel_group_quads(void)
-{
-   return MIN2(lp_native_vector_width / 128, 4);
-}
 
 /**
  * Have room for such layers in all threads.  Called before they are drawn to,
