@@ -70,7 +70,6 @@ std::map<std::string, std::string> mesa_environment(const std::string &prefix)
         {"LD_LIBRARY_PATH", prefix + "/" KBUFFER_LIBRARY_DIRECTORY},
         {"__GLX_VENDOR_LIBRARY_NAME", "mesa"},
         {"__EGL_VENDOR_LIBRARY_FILENAMES", prefix + "/share/glvnd/egl_vendor.d/50_mesa.json"},
-        {"MESA_SHADER_CACHE_DISABLE", "true"},
     };
 }
 

@@ -295,11 +295,11 @@ TEST(ReferenceInvariance, ColdAndWarmShaderCache)
 {
     const TempDirectory cache;
     const std::map<std::string, std::string> cached{
-        {"MESA_SHADER_CACHE_DISABLE", "false"}, {"MESA_SHADER_CACHE_DIR", (cache / "").string()}};
+        {"MESA_SHADER_CACHE_DIR", (cache / "").string()}};
     const std::string cold = digest_of(cached);
     EXPECT_GT(cache.file_count(), 0U) << "nothing was cached";
     EXPECT_EQ(digest_of(cached), cold);
-    EXPECT_EQ(digest_of({}), cold);
+    EXPECT_EQ(digest_of({{"MESA_SHADER_CACHE_DISABLE", "true"}}), cold);
 }
 
 TEST(ReferenceInvariance, ADigestTellsPicturesApart)

@@ -29,6 +29,7 @@ ENVIRONMENTS = (
     ("same-width-128", "vector width", "Vectors of 128 and 256 bits: the same bits", "128 bits"),
     ("same-width-256", "vector width", "Vectors of 128 and 256 bits: the same bits", "256 bits"),
     ("same-no-culling", "culling", "With and without early rejection: the same bits", "without"),
+    ("same-no-cache", "shader cache", "Shaders compiled or from the cache: the same bits", "off"),
     ("same-cold-cache", "shader cache", "Shaders compiled or from the cache: the same bits", "cold"),
     ("same-warm-cache", "shader cache", "Shaders compiled or from the cache: the same bits", "warm"),
 )
