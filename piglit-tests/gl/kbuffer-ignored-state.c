@@ -49,6 +49,21 @@ blend_constant(void)
 	glBlendColor(1, 1, 1, 1);
 }
 
+/** Of two draw buffers, which dual-source blending itself cannot have. */
+static void
+blend_dual_source(void)
+{
+	glEnable(GL_BLEND);
+	glBlendFunc(GL_SRC1_COLOR, GL_ONE_MINUS_SRC1_COLOR);
+}
+
+static void
+blend_advanced(void)
+{
+	glEnable(GL_BLEND);
+	glBlendEquation(GL_MULTIPLY_KHR);
+}
+
 static void
 logic_op(void)
 {
@@ -101,6 +116,64 @@ ignored(void *data)
 			       i < 2 ? "before" : "after");
 			pass = false;
 		}
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+static enum piglit_result
+dual_source(void *data)
+{
+	piglit_require_extension("GL_ARB_blend_func_extended");
+	return ignored(blend_dual_source);
+}
+
+static bool
+has_advanced_blending(void)
+{
+	if (piglit_is_extension_supported("GL_KHR_blend_equation_advanced"))
+		return true;
+	printf("no advanced blending here\n");
+	return false;
+}
+
+/** Two draw buffers, and a fragment stage that was not made for it. */
+static enum piglit_result
+advanced(void *data)
+{
+	return has_advanced_blending() ? ignored(blend_advanced) : PIGLIT_SKIP;
+}
+
+/** A shader that could blend so hands its own color to the program. */
+static enum piglit_result
+advanced_shader(void *data)
+{
+	struct kb kb;
+	bool pass = true;
+
+	if (!has_advanced_blending())
+		return PIGLIT_SKIP;
+	kb = kb_create(GL_RGBA32F, 1, 0, W, W);
+	kb_use_glsl("#version 150 compatibility\n"
+		    "void main() { gl_Position = gl_Vertex; }\n", NULL,
+		    "#version 150 compatibility\n"
+		    "#extension GL_KHR_blend_equation_advanced: require\n"
+		    "layout(blend_support_multiply) out;\n"
+		    "out vec4 o;\nvoid main() { o = vec4(.5, .25, 1, 1); }\n");
+	kb_program("ADD result.kbuffer[0], fragment.color, 1;");
+	for (int i = 0; i < 4; i++) {
+		kb_fill(&kb, 0, .5, .5, .5, 1);
+		/* By the equation, by the program, and both in turn. */
+		if (i == 0)
+			blend_advanced();
+		else if (i == 3)
+			glDisable(GL_BLEND);
+		if (i % 2)
+			glEnable(GL_KBUFFER_PROGRAM_MESA);
+		else
+			glDisable(GL_KBUFFER_PROGRAM_MESA);
+		kb_draw(&kb);
+		pass = (i % 2 ? kb_expect(&kb, 0, 0, 1.5, 1.25, 2, 2) :
+			kb_expect(&kb, 0, 1e-6, .25, .125, .5, 1)) && pass;
 	}
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
@@ -175,6 +248,9 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("blend-min", ignored, blend_min),
 	KB_SUBTEST("blend-second-buffer", ignored, blend_second_buffer),
 	KB_SUBTEST("blend-constant", ignored, blend_constant),
+	KB_SUBTEST("blend-dual-source", dual_source, NULL),
+	KB_SUBTEST("blend-advanced", advanced, NULL),
+	KB_SUBTEST("blend-advanced-shader", advanced_shader, NULL),
 	KB_SUBTEST("logic-op", ignored, logic_op),
 	KB_SUBTEST("logic-op-clear", ignored, logic_op_clear),
 	KB_SUBTEST("dither", ignored, dither),

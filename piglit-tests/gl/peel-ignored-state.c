@@ -85,6 +85,44 @@ dual_source(void *data)
 	return draw_and_check(&p);
 }
 
+/** With two draw buffers, which dual-source blending itself cannot have. */
+static enum piglit_result
+dual_source_two_buffers(void *data)
+{
+	struct peel p = peel_create(&(struct peel_shape) {
+		K, 16, 12, 0, GL_DEPTH_COMPONENT24, { GL_RGBA8, GL_R32UI } });
+
+	piglit_require_extension("GL_ARB_blend_func_extended");
+	glEnable(GL_BLEND);
+	glBlendFunc(GL_SRC1_COLOR, GL_ONE_MINUS_SRC1_COLOR);
+	return draw_and_check(&p);
+}
+
+/** By a shader that was not made for it, and one that was. */
+static enum piglit_result
+advanced(void *data)
+{
+	struct peel p = peel_create(&(struct peel_shape) {
+		K, 16, 12, 0, GL_DEPTH_COMPONENT24, { GL_RGBA8, GL_RGBA8 } });
+	static const int one[1] = { 0 };
+	enum piglit_result result;
+
+	if (!piglit_is_extension_supported("GL_KHR_blend_equation_advanced")) {
+		printf("no advanced blending here\n");
+		return peel_end(&p, true) == PIGLIT_PASS ? PIGLIT_SKIP :
+			PIGLIT_FAIL;
+	}
+	glEnable(GL_BLEND);
+	glBlendEquation(GL_MULTIPLY_KHR);
+	result = draw_and_check(&p);
+
+	p = make(GL_RGBA8);
+	peel_draw_buffers(&p, 1, one);
+	peel_use_program(&p, "#extension GL_KHR_blend_equation_advanced: "
+			 "require\nlayout(blend_support_multiply) out;\n", "");
+	return draw_and_check(&p) == PIGLIT_PASS ? result : PIGLIT_FAIL;
+}
+
 static enum piglit_result
 logic_op(void *data)
 {
@@ -157,6 +195,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("blend", blend, &rgba8),
 	KB_SUBTEST("blend-float", blend, &rgba32f),
 	KB_SUBTEST("dual-source", dual_source, NULL),
+	KB_SUBTEST("dual-source-two-buffers", dual_source_two_buffers, NULL),
+	KB_SUBTEST("advanced", advanced, NULL),
 	KB_SUBTEST("logic-op", logic_op, NULL),
 	KB_SUBTEST("stencil-state", stencil_state, NULL),
 	KB_SUBTEST("layer", layer, NULL),

@@ -10,6 +10,7 @@
  * meant.
  */
 
+#include "kbuffer-messages.h"
 #include "peel-common.h"
 
 static enum piglit_result
@@ -22,8 +23,11 @@ refused(void *data)
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 	glColor4fv(green);
 	glEnable(GL_DEPTH_PEELING_MESA);
+	kb_collect_messages();
 	glRectf(-1, -1, 1, 1);
-	pass = piglit_check_gl_error(GL_INVALID_OPERATION);
+	pass = kb_expect_message(GL_INVALID_OPERATION,
+				 "(depth peeling in the default framebuffer)");
+	kb_stop_messages();
 	pass = piglit_probe_rect_rgba(0, 0, piglit_width, piglit_height,
 				      blue) && pass;
 

@@ -14,6 +14,7 @@
 #include "main/draw_validate.h"
 #include "main/errors.h"
 #include "main/fbobject.h"
+#include "main/kbuffer.h"
 #include "main/state.h"
 #include "state_tracker/st_context.h"
 #include "state_tracker/st_peel.h"
@@ -24,7 +25,7 @@ _mesa_enable_depth_peeling(struct gl_context *ctx, GLboolean state)
    if (ctx->DepthPeeling.Enabled == state)
       return;
 
-   FLUSH_VERTICES(ctx, 0, GL_ENABLE_BIT);
+   FLUSH_VERTICES(ctx, _mesa_new_advanced_blend_state(ctx), GL_ENABLE_BIT);
    ctx->DepthPeeling.Enabled = state;
    _mesa_depth_peeling_changed(ctx);
 }
@@ -50,21 +51,21 @@ continue_at(struct gl_context *ctx, struct gl_framebuffer *fb, GLint layer,
 {
    struct gl_framebuffer_peeling *peeling = &fb->Peeling;
    struct gl_peel_order order;
+   char reason[MAX_DRAW_REASON];
 
    if (fb->_Status == 0)
       _mesa_test_framebuffer_completeness(ctx, fb);
 
-   if (fb->_Status != GL_FRAMEBUFFER_COMPLETE ||
-       !_mesa_get_peel_order(ctx, fb, &order)) {
+   if (fb->_Status != GL_FRAMEBUFFER_COMPLETE) {
       _mesa_error(ctx, GL_INVALID_OPERATION,
-                  "%s(no array of layers to peel)", func);
+                  "%s(framebuffer is not complete)", func);
       return;
    }
 
-   if (peeling->FirstLayer != 0 &&
-       !_mesa_peel_orders_equal(&order, &peeling->Order)) {
-      _mesa_error(ctx, GL_INVALID_OPERATION,
-                  "%s(glDepthFunc or the depth attachment has changed)", func);
+   if (!_mesa_get_peel_order(ctx, fb, &order, reason) ||
+       (peeling->FirstLayer != 0 &&
+        !_mesa_check_peel_order(&order, peeling, reason))) {
+      _mesa_error(ctx, GL_INVALID_OPERATION, "%s(%s)", func, reason);
       return;
    }
 

@@ -51,17 +51,22 @@ _mesa_get_peel_overflow(struct gl_context *ctx, struct gl_framebuffer *fb);
 /**
  * The order in which drawing to \p fb would peel now.
  *
- * \return false if the depth attachment is none that can be peeled into.
+ * \param reason  NULL, or MAX_DRAW_REASON bytes for what is wrong
+ * \return false if the depth attachment is none that can be peeled into
  */
 bool
 _mesa_get_peel_order(const struct gl_context *ctx,
                      const struct gl_framebuffer *fb,
-                     struct gl_peel_order *order);
+                     struct gl_peel_order *order, char *reason);
 
-/** Whether fragments peeled in one order can go on behind those of another. */
+/**
+ * Whether fragments peeled in an order can go on behind those of the layers
+ * before GL_DEPTH_PEELING_FIRST_LAYER_MESA, which is not 0.
+ */
 bool
-_mesa_peel_orders_equal(const struct gl_peel_order *a,
-                        const struct gl_peel_order *b);
+_mesa_check_peel_order(const struct gl_peel_order *order,
+                       const struct gl_framebuffer_peeling *peeling,
+                       char *reason);
 
 /** Whether ranks before GL_DEPTH_PEELING_FIRST_LAYER_MESA can be skipped. */
 static inline bool
@@ -76,9 +81,11 @@ _mesa_can_continue_peeling(const struct gl_peel_order *order)
 /**
  * Whether a draw with GL_DEPTH_PEELING_MESA enabled may go on, apart from the
  * memory for its object.
+ *
+ * \param reason  NULL, or MAX_DRAW_REASON bytes for what is wrong
  */
 bool
-_mesa_depth_peeling_valid(const struct gl_context *ctx);
+_mesa_check_peel_draw(struct gl_context *ctx, char *reason);
 
 /**
  * Whether a draw may run (true also when depth peeling is disabled).  Sets

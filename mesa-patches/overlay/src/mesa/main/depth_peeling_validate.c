@@ -9,6 +9,8 @@
  */
 
 #include "main/depth_peeling.h"
+#include "main/enums.h"
+#include "main/kbuffer.h"
 #include "state_tracker/st_context.h"
 #include "state_tracker/st_peel.h"
 
@@ -27,13 +29,24 @@ num_layers(const struct gl_renderbuffer_attachment *att)
 bool
 _mesa_get_peel_order(const struct gl_context *ctx,
                      const struct gl_framebuffer *fb,
-                     struct gl_peel_order *order)
+                     struct gl_peel_order *order, char *reason)
 {
    const struct gl_renderbuffer_attachment *att = &fb->Attachment[BUFFER_DEPTH];
    const unsigned layers = num_layers(att);
 
-   if (layers == 0 || layers > ctx->Const.MaxDepthPeelingLayers)
-      return false;
+   if (fb->Name == 0) {
+      return _mesa_refuse_draw(reason,
+                               "depth peeling in the default framebuffer");
+   }
+   if (layers == 0) {
+      return _mesa_refuse_draw(reason, "depth peeling without a layered 2D "
+                               "array as depth attachment");
+   }
+   if (layers > ctx->Const.MaxDepthPeelingLayers) {
+      return _mesa_refuse_draw(reason, "depth peeling with %u layers, at most "
+                               "%u are possible", layers,
+                               ctx->Const.MaxDepthPeelingLayers);
+   }
 
    order->DepthFunc = ctx->Depth.Func;
    order->Format = att->Renderbuffer->Format;
@@ -46,40 +59,73 @@ _mesa_get_peel_order(const struct gl_context *ctx,
 }
 
 bool
-_mesa_peel_orders_equal(const struct gl_peel_order *a,
-                        const struct gl_peel_order *b)
+_mesa_check_peel_order(const struct gl_peel_order *order,
+                       const struct gl_framebuffer_peeling *peeling,
+                       char *reason)
 {
-   return a->DepthFunc == b->DepthFunc &&
-          a->Format == b->Format &&
-          a->Width == b->Width &&
-          a->Height == b->Height &&
-          a->NumLayers == b->NumLayers &&
-          a->NumSamples == b->NumSamples;
+   const struct gl_peel_order *before = &peeling->Order;
+   const char *what;
+
+   if (order->DepthFunc != before->DepthFunc)
+      what = "glDepthFunc";
+   else if (order->Format != before->Format)
+      what = "the format of the depth attachment";
+   else if (order->Width != before->Width || order->Height != before->Height)
+      what = "the size of the depth attachment";
+   else if (order->NumLayers != before->NumLayers)
+      what = "the number of layers";
+   else if (order->NumSamples != before->NumSamples)
+      what = "the number of samples";
+   else
+      return true;
+
+   return _mesa_refuse_draw(reason, "depth peeling from layer %d on: %s has "
+                            "changed since that was set",
+                            peeling->FirstLayer, what);
 }
 
 static bool
-draw_buffers_have_layers(const struct gl_framebuffer *fb, unsigned layers)
+check_draw_buffers(const struct gl_framebuffer *fb, unsigned layers,
+                   char *reason)
 {
    for (unsigned i = 0; i < fb->_NumColorDrawBuffers; i++) {
       const gl_buffer_index buffer = fb->_ColorDrawBufferIndexes[i];
 
-      if (buffer != BUFFER_NONE &&
-          fb->Attachment[buffer].Type != GL_NONE &&
-          num_layers(&fb->Attachment[buffer]) != layers)
-         return false;
+      if (buffer == BUFFER_NONE || fb->Attachment[buffer].Type == GL_NONE)
+         continue;
+
+      const unsigned found = num_layers(&fb->Attachment[buffer]);
+
+      if (found == 0) {
+         return _mesa_refuse_draw(reason, "depth peeling without a layered 2D "
+                                  "array in draw buffer %u", i);
+      }
+      if (found != layers) {
+         return _mesa_refuse_draw(reason, "depth peeling with %u layers of "
+                                  "depth and %u in draw buffer %u",
+                                  layers, found, i);
+      }
    }
 
    return true;
 }
 
 bool
-_mesa_depth_peeling_valid(const struct gl_context *ctx)
+_mesa_check_peel_draw(struct gl_context *ctx, char *reason)
 {
-   const struct gl_framebuffer *fb = ctx->DrawBuffer;
+   struct gl_framebuffer *fb = ctx->DrawBuffer;
+   const struct gl_framebuffer_peeling *peeling = &fb->Peeling;
    struct gl_peel_order order;
 
-   if (ctx->Stencil.Enabled || ctx->Kbuffer.Enabled)
-      return false;
+   if (!ctx->DepthPeeling.Enabled)
+      return true;
+
+   if (ctx->Stencil.Enabled)
+      return _mesa_refuse_draw(reason, "depth peeling with GL_STENCIL_TEST");
+   if (ctx->Kbuffer.Enabled) {
+      return _mesa_refuse_draw(reason,
+                               "depth peeling with GL_KBUFFER_PROGRAM_MESA");
+   }
 
    switch (ctx->Depth.Func) {
    case GL_LESS:
@@ -88,16 +134,30 @@ _mesa_depth_peeling_valid(const struct gl_context *ctx)
    case GL_GEQUAL:
       break;
    default:
-      return false;
+      return _mesa_refuse_draw(reason, "depth peeling with glDepthFunc(%s)",
+                               _mesa_enum_to_string(ctx->Depth.Func));
    }
 
-   if (!fb || !_mesa_get_peel_order(ctx, fb, &order) ||
-       !draw_buffers_have_layers(fb, order.NumLayers))
+   if (!_mesa_get_peel_order(ctx, fb, &order, reason) ||
+       !check_draw_buffers(fb, order.NumLayers, reason))
       return false;
 
-   return fb->Peeling.FirstLayer == 0 ||
-          (_mesa_can_continue_peeling(&order) &&
-           _mesa_peel_orders_equal(&order, &fb->Peeling.Order));
+   if (peeling->FirstLayer != 0) {
+      if (!_mesa_check_peel_order(&order, peeling, reason))
+         return false;
+      if (!_mesa_can_continue_peeling(&order)) {
+         return _mesa_refuse_draw(reason, "depth peeling from layer %d on with "
+                                  "glDepthFunc(%s)", peeling->FirstLayer,
+                                  _mesa_enum_to_string(ctx->Depth.Func));
+      }
+   }
+
+   if (!st_peel_owns_object(ctx, fb)) {
+      return _mesa_refuse_draw(reason, "depth peeling in a framebuffer that "
+                               "another context peels into");
+   }
+
+   return true;
 }
 
 bool
@@ -106,8 +166,7 @@ _mesa_depth_peeling_valid_to_render(struct gl_context *ctx)
    if (!ctx->DepthPeeling.Enabled)
       return true;
 
-   if (!_mesa_depth_peeling_valid(ctx) ||
-       !st_peel_owns_object(ctx, ctx->DrawBuffer))
+   if (!_mesa_check_peel_draw(ctx, NULL))
       return false;
 
    if (!st_peel_create_object(ctx, ctx->DrawBuffer)) {

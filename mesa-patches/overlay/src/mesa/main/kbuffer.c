@@ -57,7 +57,8 @@ _mesa_enable_kbuffer(struct gl_context *ctx, GLboolean state)
    if (ctx->Kbuffer.Enabled == state)
       return;
 
-   FLUSH_VERTICES(ctx, _NEW_PROGRAM, GL_ENABLE_BIT);
+   FLUSH_VERTICES(ctx, _NEW_PROGRAM | _mesa_new_advanced_blend_state(ctx),
+                  GL_ENABLE_BIT);
    ctx->Kbuffer.Enabled = state;
    _mesa_update_clamp_fragment_color(ctx, ctx->DrawBuffer);
    _mesa_kbuffer_program_changed(ctx);

@@ -18,6 +18,7 @@
 
 #include <stdbool.h>
 #include "util/glheader.h"
+#include "util/macros.h"
 #include "main/extensions.h"
 #include "main/mtypes.h"
 
@@ -56,6 +57,17 @@ _mesa_kbuffer_program(const struct gl_context *ctx)
    struct gl_program *prog = ctx->Kbuffer.Current;
 
    return ctx->Kbuffer.Enabled && prog && prog->arb.Instructions ? prog : NULL;
+}
+
+/**
+ * State to update when what replaces blending is enabled or disabled: the
+ * equations of KHR_blend_equation_advanced are in the fragment shader, which
+ * looks at a constant for the one in force.
+ */
+static inline GLbitfield
+_mesa_new_advanced_blend_state(const struct gl_context *ctx)
+{
+   return ctx->Color._AdvancedBlendMode != BLEND_NONE ? _NEW_COLOR : 0;
 }
 
 void
@@ -98,12 +110,31 @@ _mesa_kbuffer_program_limits(const struct gl_context *ctx);
 unsigned
 _mesa_kbuffer_num_entries(const struct gl_context *ctx);
 
+/** Bytes for the reason why a draw is refused, its final zero included. */
+#define MAX_DRAW_REASON 160
+
+/**
+ * Write why a draw is refused, where \p reason is not NULL.
+ *
+ * \return false
+ */
+bool
+_mesa_refuse_draw(char *reason, const char *format, ...) PRINTFLIKE(2, 3);
+
 /**
  * Whether a draw may run with GL_KBUFFER_PROGRAM_MESA enabled (true also
  * when it is disabled): a valid program, no integer color buffer, one color
  * buffer per draw buffer and every entry named by the program present.
+ *
+ * \param reason  NULL, or MAX_DRAW_REASON bytes for what is wrong
  */
 bool
-_mesa_kbuffer_valid_to_render(const struct gl_context *ctx);
+_mesa_kbuffer_check_draw(const struct gl_context *ctx, char *reason);
+
+static inline bool
+_mesa_kbuffer_valid_to_render(const struct gl_context *ctx)
+{
+   return _mesa_kbuffer_check_draw(ctx, NULL);
+}
 
 #endif /* KBUFFER_H */

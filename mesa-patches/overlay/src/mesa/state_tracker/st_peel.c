@@ -208,8 +208,7 @@ draw_object(struct gl_context *ctx)
    /* Draw validation has looked at the same, but not in contexts without
     * errors.
     */
-   if (!ctx->DepthPeeling.Enabled || !_mesa_depth_peeling_valid(ctx) ||
-       !st_peel_owns_object(ctx, ctx->DrawBuffer) ||
+   if (!ctx->DepthPeeling.Enabled || !_mesa_check_peel_draw(ctx, NULL) ||
        !st_peel_create_object(ctx, ctx->DrawBuffer))
       return NULL;
 
