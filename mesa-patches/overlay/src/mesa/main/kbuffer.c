@@ -62,6 +62,7 @@ _mesa_enable_kbuffer(struct gl_context *ctx, GLboolean state)
    ctx->Kbuffer.Enabled = state;
    _mesa_update_clamp_fragment_color(ctx, ctx->DrawBuffer);
    _mesa_kbuffer_program_changed(ctx);
+   _mesa_update_allow_draw_out_of_order(ctx);
 }
 
 void
