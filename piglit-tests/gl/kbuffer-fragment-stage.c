@@ -171,6 +171,7 @@ dual_source(void *data)
 {
 	struct kb kb = make("ADD result.kbuffer[0], kbuffer[0], "
 			    "fragment.color[0];");
+	bool pass;
 
 	if (!piglit_is_extension_supported("GL_ARB_blend_func_extended")) {
 		printf("no dual-source blending here\n");
@@ -184,7 +185,12 @@ dual_source(void *data)
 	glEnable(GL_BLEND);
 	glBlendFunc(GL_SRC1_COLOR, GL_ONE_MINUS_SRC1_COLOR);
 	kb_draw(&kb);
-	return check(&kb, 1, 2, 3, 4);
+	pass = check(&kb, 1, 2, 3, 4) == PIGLIT_PASS;
+	/* Nor is it that of another output. */
+	kb_program("MOV result.kbuffer[0], fragment.color[1];");
+	kb_draw(&kb);
+	return check(&kb, 0, 0, 0, 1) == PIGLIT_PASS && pass ?
+		PIGLIT_PASS : PIGLIT_FAIL;
 }
 
 /** Integer outputs keep nothing to read, but must do no harm. */
@@ -196,6 +202,56 @@ no_output(void *data)
 	kb_use_glsl(vs, NULL, "#version 130\nvoid main() { }\n");
 	kb_draw(&kb);
 	return check(&kb, 7, 7, 7, 7);
+}
+
+/** Color outputs that the fragment stage does not write are (0, 0, 0, 1). */
+static enum piglit_result
+unwritten(void *data)
+{
+	static const char *const fragment_shaders[] = {
+		"#version 150 compatibility\n"
+		"#extension GL_ARB_explicit_attrib_location: require\n"
+		"layout(location = 1) out vec4 a;\n"
+		"void main() { a = vec4(5, 6, 7, 8); }\n",
+		"#version 150 compatibility\nvoid main() { }\n",
+	};
+	struct kb kb = kb_create(GL_RGBA32F, 3, 0, W, W);
+	bool pass = true;
+
+	kb_program("MOV result.kbuffer[0], fragment.color[0];\n"
+		   "MOV result.kbuffer[1], fragment.color[1];\n"
+		   "MOV result.kbuffer[2], fragment.color[7];");
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	for (int i = 0; i < ARRAY_SIZE(fragment_shaders); i++) {
+		kb_use_glsl(vs, NULL, fragment_shaders[i]);
+		for (int e = 0; e < 3; e++)
+			kb_fill(&kb, e, 9, 9, 9, 9);
+		kb_draw(&kb);
+		pass = kb_expect(&kb, 0, 0, 0, 0, 0, 1) && pass;
+		pass = (i == 0 ? kb_expect(&kb, 1, 0, 5, 6, 7, 8) :
+			kb_expect(&kb, 1, 0, 0, 0, 0, 1)) && pass;
+		pass = kb_expect(&kb, 2, 0, 0, 0, 0, 1) && pass;
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/** The same of an ARB program that has another result only. */
+static enum piglit_result
+arb_unwritten(void *data)
+{
+	static const char fp[] = "!!ARBfp1.0\nOPTION ARB_draw_buffers;\n"
+		"MOV result.color[1], { 5, 6, 7, 8 };\nEND\n";
+	struct kb kb = kb_create(GL_RGBA32F, 2, 0, W, W);
+
+	kb_fragment_value(0, 0, 0, 0);
+	if (kb_load(GL_FRAGMENT_PROGRAM_ARB, fp, strlen(fp)))
+		return PIGLIT_FAIL;
+	kb_program("MOV result.kbuffer[0], fragment.color[0];\n"
+		   "MOV result.kbuffer[1], fragment.color[1];");
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	kb_draw(&kb);
+	return kb_expect(&kb, 0, 0, 0, 0, 0, 1) &&
+		kb_expect(&kb, 1, 0, 5, 6, 7, 8) ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
 struct clamp { GLenum mode, format; bool clamped; };
@@ -238,6 +294,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("glsl-small-output", glsl_small_output, NULL),
 	KB_SUBTEST("dual-source", dual_source, NULL),
 	KB_SUBTEST("no-output", no_output, NULL),
+	KB_SUBTEST("unwritten-is-black", unwritten, NULL),
+	KB_SUBTEST("arb-unwritten-is-black", arb_unwritten, NULL),
 	KB_SUBTEST("clamp-on", clamp, &on),
 	KB_SUBTEST("clamp-on-fixed", clamp, &on_fixed),
 	KB_SUBTEST("clamp-off", clamp, &off),

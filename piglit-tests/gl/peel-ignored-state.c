@@ -98,6 +98,41 @@ dual_source_two_buffers(void *data)
 	return draw_and_check(&p);
 }
 
+/** Where there is a second draw buffer, the second color is not its color. */
+static enum piglit_result
+second_source_is_no_output(void *data)
+{
+	struct peel p = peel_create(&(struct peel_shape) {
+		K, 16, 12, 0, GL_DEPTH_COMPONENT24, { GL_RGBA8, GL_RGBA8 } });
+	uint32_t *color;
+	bool pass = true;
+
+	piglit_require_extension("GL_ARB_blend_func_extended");
+	kb_use_glsl("#version 150 compatibility\n"
+		    "void main() { gl_Position = gl_Vertex; }\n", NULL,
+		    "#version 150 compatibility\n"
+		    "#extension GL_ARB_explicit_attrib_location: require\n"
+		    "layout(location = 0, index = 0) out vec4 a;\n"
+		    "layout(location = 0, index = 1) out vec4 b;\n"
+		    "void main() { a = vec4(1, 1, 0, 0); b = vec4(.2); }\n");
+	glRectf(-1, -1, 1, 1);
+	for (int a = 0; a < 2; a++) {
+		const uint32_t expected[2][4] = { { 255, 255, 0, 0 },
+						  { 0, 0, 0, 255 } };
+
+		color = peel_read_color(&p, a);
+		for (int i = 0; i < 16 * 12 && pass; i++) {
+			pass = memcmp(color + 4 * i, expected[a], 16) == 0;
+			if (!pass)
+				printf("attachment %d: %u %u %u %u\n", a,
+				       color[4 * i], color[4 * i + 1],
+				       color[4 * i + 2], color[4 * i + 3]);
+		}
+		free(color);
+	}
+	return peel_end(&p, pass);
+}
+
 /** By a shader that was not made for it, and one that was. */
 static enum piglit_result
 advanced(void *data)
@@ -196,6 +231,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("blend-float", blend, &rgba32f),
 	KB_SUBTEST("dual-source", dual_source, NULL),
 	KB_SUBTEST("dual-source-two-buffers", dual_source_two_buffers, NULL),
+	KB_SUBTEST("second-source-is-no-output", second_source_is_no_output,
+		   NULL),
 	KB_SUBTEST("advanced", advanced, NULL),
 	KB_SUBTEST("logic-op", logic_op, NULL),
 	KB_SUBTEST("stencil-state", stencil_state, NULL),

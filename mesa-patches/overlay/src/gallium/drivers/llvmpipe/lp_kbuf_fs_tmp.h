@@ -102,8 +102,10 @@ kbuf_colors(struct gallivm_state *gallivm, const struct kbuf_fs_results *fs,
             LLVMValueRef (*colors)[4])
 {
    for (unsigned i = 0; i < fs->key->kbuf.num_colors; i++) {
+      /* A second source color goes by the number of the next output. */
       const bool written =
-         find_output_by_frag_result(fs->nir, FRAG_RESULT_DATA0 + i) != -1;
+         find_output_by_frag_result(fs->nir, FRAG_RESULT_DATA0 + i) != -1 &&
+         !(i > 0 && fs->nir->info.fs.color_is_dual_source);
       const bool integer =
          util_format_is_pure_integer(fs->key->cbuf_format[i]);
 

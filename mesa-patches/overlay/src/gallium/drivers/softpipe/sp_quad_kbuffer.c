@@ -402,7 +402,9 @@ sp_kbuffer_find_colors(const struct softpipe_context *sp,
    for (unsigned i = 0; i < info->num_outputs; i++) {
       const unsigned n = info->output_semantic_index[i];
 
-      if (info->output_semantic_name[i] == TGSI_SEMANTIC_COLOR)
+      /* A second source color goes by the number of the next output. */
+      if (info->output_semantic_name[i] == TGSI_SEMANTIC_COLOR &&
+          !(n > 0 && sp->fs->has_dual_source))
          color[n] = n;
    }
 }
