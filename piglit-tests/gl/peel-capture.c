@@ -117,7 +117,9 @@ peel_draw_captured(struct peel *p, GLenum mode,
 					       + 4 * j, 16);
 			}
 			found++;
-			peel_model_insert(p, x, y, j / area, a.depth[j],
+			peel_model_insert(p, x, y, j / area,
+					  peel_clamp_depth(p->depth,
+							   a.depth[j]),
 					  colors);
 		}
 		free_image(&a);

@@ -64,6 +64,13 @@ peel_max_depth(const struct peel_format *format);
 uint32_t
 peel_unpack_depth(const struct peel_format *format, const void *texel);
 
+/**
+ * The code of a depth that depth peeling clamps to [0, 1] and an ordinary depth
+ * test may not: in buffers of floats interpolation makes errors to both sides.
+ */
+uint32_t
+peel_clamp_depth(const struct peel_format *format, uint32_t code);
+
 /** The code that a depth is stored as, if it is stored by truncation. */
 uint32_t
 peel_depth_code(const struct peel_format *format, double z);

@@ -175,6 +175,89 @@ static const GLenum d16 = GL_DEPTH_COMPONENT16, d24 = GL_DEPTH_COMPONENT24,
 	KB_SUBTEST(name "-neighbours", neighbours, format),             \
 	KB_SUBTEST(name "-slanted", slanted, format)
 
+/**
+ * Polygon offset leads interpolated depths out of [0, 1]: they are clamped,
+ * and so are equal, in the order of arrival.
+ */
+static enum piglit_result
+offset_out_of_range(void *data)
+{
+	const GLenum format = *(const GLenum *)data;
+	const uint32_t max = peel_max_depth(peel_format(format));
+	bool pass = true;
+
+	for (int greater = 0; greater < 2 && pass; greater++) {
+		struct peel p;
+
+		glDepthFunc(greater ? GL_GREATER : GL_LESS);
+		glClearDepth(greater ? 0 : 1);
+		p = make(format, 8);
+		glEnable(GL_POLYGON_OFFSET_FILL);
+		for (int i = 0; i < 8; i++) {
+			struct peel_quad q = peel_full(&p, (1 + i * 5 % 8) /
+						       16., i);
+
+			/* More than all depths, whatever a unit is. */
+			glPolygonOffset(0, greater ? 1e9 : -1e9);
+			peel_draw_gl(&p, &q, 1);
+			q.z = peel_depth(p.depth, greater ? max : 0);
+			peel_draw_model(&p, &q, 1);
+		}
+		glDisable(GL_POLYGON_OFFSET_FILL);
+		pass = peel_check(&p);
+		peel_end(&p, pass);
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/**
+ * On the near plane interpolation makes errors to both sides: no depth is
+ * less than 0, in no layer, nor more than 1 on the far plane.
+ */
+static enum piglit_result
+rounded_out_of_range(void *data)
+{
+	enum { NUM = 60 };
+	struct peel p = peel_create(&(struct peel_shape) {
+		NUM, 33, 33, 0, GL_DEPTH_COMPONENT32F, { GL_R32UI } });
+	struct peel_vertex vertices[3 * NUM];
+	uint32_t *depth;
+	int on_plane = 0;
+	bool pass = true;
+
+	peel_seed(3);
+	for (int i = 0; i < NUM; i++) {
+		/* An edge through the centers of pixels lies on the plane. */
+		const float y = (2 * (3 + peel_random(26)) + 1) / 33. - 1;
+		const float top = y + (1 + peel_random(1000)) / 300.;
+		const float z = (1 + peel_random(1000)) / 1001.;
+
+		vertices[3 * i] = (struct peel_vertex) { -1.1, y, 0, 1, i };
+		vertices[3 * i + 1] = (struct peel_vertex) { 1.3, y, 0, 1, i };
+		vertices[3 * i + 2] = (struct peel_vertex) { .1, top, z, 1, i };
+		/* Seen from both sides: the edge is inside of one of them. */
+		if (i % 2)
+			vertices[3 * i + 2].y = 2 * y - top;
+	}
+	peel_draw_vertices(GL_TRIANGLES, vertices, 3 * NUM);
+	depth = peel_read_depth(&p);
+	for (int i = 0; i < NUM * 33 * 33 && pass; i++) {
+		float z;
+
+		memcpy(&z, depth + i, sizeof(z));
+		pass = z >= 0 && z <= 1;
+		if (!pass)
+			printf("layer %d: depth %g\n", i / (33 * 33), z);
+		on_plane += z < 1e-6;
+	}
+	if (on_plane == 0) {
+		printf("there is nothing on the near plane\n");
+		pass = false;
+	}
+	free(depth);
+	return peel_end(&p, pass);
+}
+
 const struct piglit_subtest kbuffer_subtests[] = {
 	FORMAT("16", &d16),
 	FORMAT("24", &d24),
@@ -184,6 +267,10 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("16-merged", merged, &d16),
 	KB_SUBTEST("24-8-stencil", stencil, &d24s8),
 	KB_SUBTEST("32f-8-stencil", stencil, &d32fs8),
+	KB_SUBTEST("offset-out-of-range-16", offset_out_of_range, &d16),
+	KB_SUBTEST("offset-out-of-range-24", offset_out_of_range, &d24),
+	KB_SUBTEST("offset-out-of-range-32f", offset_out_of_range, &d32f),
+	KB_SUBTEST("rounded-out-of-range", rounded_out_of_range, NULL),
 	KB_SUBTEST_END
 };
 

@@ -184,6 +184,15 @@ peel_unpack_depth(const struct peel_format *format, const void *texel)
 }
 
 uint32_t
+peel_clamp_depth(const struct peel_format *format, uint32_t code)
+{
+	/* Negative floats have the highest bit. */
+	if (format->bits[0] == 32 && code > INT32_MAX)
+		return 0;
+	return MIN2(code, peel_max_depth(format));
+}
+
+uint32_t
 peel_depth_code(const struct peel_format *format, double z)
 {
 	z = CLAMP(z, 0, 1);

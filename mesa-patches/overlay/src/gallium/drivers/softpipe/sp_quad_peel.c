@@ -108,11 +108,7 @@ load_depth(const struct peel_stage *stage, struct quad_header *quads[],
       return mask;
    }
 
-   /* Interpolated depth leaves [0, 1] only by rounding errors, which the
-    * ordinary depth test lets a float buffer have.
-    */
-   if (!(stage->layout.is_float && interpolated && !clamped))
-      sp_kbuffer_clamp_depth(sp, viewport_index, z);
+   sp_kbuffer_clamp_depth(sp, viewport_index, z);
 
    u_foreach_bit(j, mask) {
       if (stage->layout.is_float)
