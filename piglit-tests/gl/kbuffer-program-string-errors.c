@@ -30,6 +30,18 @@ static const struct bad bad_strings[] = {
 	{ "no-option-no-binding", FP "`TEMP t;\nMOV t, 1;\nEND\n`" },
 	{ "misspelt-option",
 	  FP "OPTION `MESA_kbuffer_programs`;\nMOV result.kbuffer[0], 1;\nEND\n" },
+	{ "option-fog", FP OPT "OPTION `ARB_fog_exp`;\n"
+	  "MOV result.kbuffer[0], 1;\nEND\n" },
+	{ "option-fog-before", FP "OPTION `ARB_fog_linear`;\n" OPT
+	  "MOV result.kbuffer[0], 1;\nEND\n" },
+	{ "option-draw-buffers", FP OPT "OPTION `ARB_draw_buffers`;\n"
+	  "MOV result.kbuffer[0], 1;\nEND\n" },
+	{ "option-ati-draw-buffers", FP "OPTION `ATI_draw_buffers`;\n" OPT
+	  "MOV result.kbuffer[0], 1;\nEND\n" },
+	{ "option-both-precisions", FP OPT
+	  "OPTION ARB_precision_hint_nicest;\n"
+	  "OPTION `ARB_precision_hint_fastest`;\n"
+	  "MOV result.kbuffer[0], 1;\nEND\n" },
 	{ "vertex-header", "`!!ARBvp1.0\n" OPT "`MOV result.kbuffer[0], 1;\nEND\n" },
 	{ "no-header", "`" OPT "MOV` result.kbuffer[0], 1;\nEND\n" },
 	{ "no-end", FP OPT "MOV result.kbuffer[0], 1;\n``" },
@@ -218,6 +230,72 @@ zero_byte(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** Zero bytes that end the string may be counted in its length. */
+static enum piglit_result
+final_zeros(void *data)
+{
+	static const char one[] = GOOD, three[] = GOOD "\0\0";
+	static const char comment[] = FP OPT
+		"ADD result.kbuffer[0], kbuffer[0], 1;\nEND # comment";
+	static const char fragment[] = FP "MOV result.color, 1;\nEND\n";
+	static const char behind[] = GOOD "\0 ", zeros[4] = { 0 };
+	struct kb kb = kb_create(GL_RGBA32F, 1, 0, 8, 8);
+	GLint length = 0;
+	bool pass;
+
+	kb_program("");
+	kb_fragment_value(0, 0, 0, 0);
+	pass = kb_load(GL_FRAGMENT_PROGRAM_ARB, fragment, sizeof(fragment)) ==
+		GL_NO_ERROR;
+	pass = kb_load(GL_KBUFFER_PROGRAM_MESA, comment, sizeof(comment)) ==
+		GL_NO_ERROR && pass;
+	glGetProgramivARB(GL_KBUFFER_PROGRAM_MESA, GL_PROGRAM_LENGTH_ARB,
+			  &length);
+	pass = length == strlen(comment) && pass;
+	pass = kb_load(GL_KBUFFER_PROGRAM_MESA, one, sizeof(one)) ==
+		GL_NO_ERROR && check_unharmed(&kb) && pass;
+	pass = kb_load(GL_KBUFFER_PROGRAM_MESA, three, sizeof(three)) ==
+		GL_NO_ERROR && check_unharmed(&kb) && pass;
+
+	/* What is not at the end is an error, and so is nothing else. */
+	pass = check_refused(GL_KBUFFER_PROGRAM_MESA, behind,
+			     sizeof(behind) - 1, strlen(GOOD), -1) && pass;
+	pass = check_refused(GL_KBUFFER_PROGRAM_MESA, zeros, sizeof(zeros), 0,
+			     -1) && pass;
+	return check_unharmed(&kb) && pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/** The options that mean something where there is neither fog nor color. */
+static enum piglit_result
+other_options(void *data)
+{
+	static const char *const options[] = {
+		"ARB_precision_hint_fastest", "ARB_precision_hint_nicest",
+		"ARB_fragment_program_shadow",
+		"ARB_fragment_coord_origin_upper_left",
+		"ARB_fragment_coord_pixel_center_integer",
+	};
+	bool pass = true;
+
+	kb_program("");
+	for (int i = 0; i < ARRAY_SIZE(options); i++) {
+		for (int before = 0; before < 2; before++) {
+			char string[256];
+
+			snprintf(string, sizeof(string), FP "%sOPTION %s;\n%s"
+				 "MOV result.kbuffer[0], 1;\nEND\n",
+				 before ? "" : OPT, options[i],
+				 before ? OPT : "");
+			if (kb_load(GL_KBUFFER_PROGRAM_MESA, string,
+				    strlen(string)) == GL_NO_ERROR)
+				continue;
+			printf("%s\n", string);
+			pass = false;
+		}
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 static enum piglit_result
 negative_length(void *data)
 {
@@ -259,6 +337,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("strings", strings, NULL),
 	KB_SUBTEST("truncated", truncated, NULL),
 	KB_SUBTEST("zero-byte", zero_byte, NULL),
+	KB_SUBTEST("final-zeros", final_zeros, NULL),
+	KB_SUBTEST("other-options", other_options, NULL),
 	KB_SUBTEST("negative-length", negative_length, NULL),
 	KB_SUBTEST("wrong-format", wrong_format, NULL),
 	KB_SUBTEST("length-counts", length_counts, NULL),
