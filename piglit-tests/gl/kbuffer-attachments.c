@@ -179,17 +179,44 @@ slice(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
-/** A whole texture: each layer is an entry. */
+/** Arrays of six images of W x W, or of six rows of W. */
+static GLuint
+array(GLenum target)
+{
+	GLuint tex;
+
+	glGenTextures(1, &tex);
+	glBindTexture(target, tex);
+	if (target == GL_TEXTURE_1D_ARRAY)
+		glTexImage2D(target, 0, GL_RGBA32F, W, 6, 0, GL_RGBA, GL_FLOAT,
+			     NULL);
+	else
+		glTexImage3D(target, 0, GL_RGBA32F, W, W, 6, 0, GL_RGBA,
+			     GL_FLOAT, NULL);
+	glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	return tex;
+}
+
+/** A whole texture: each layer is an entry, each face or slice one. */
 static enum piglit_result
 layered(void *data)
 {
-	const bool cube = data != NULL;
+	const GLenum target = (GLenum)(intptr_t)data;
+	const int height = target == GL_TEXTURE_1D_ARRAY ? 1 : W;
 	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, W);
-	GLuint tex = cube ? cube_map() : texture_3d(6);
 	float *got = calloc(6 * W * W * 4, sizeof(float));
 	char program[512] = "", *end = program;
 	bool pass = true;
+	GLuint tex;
 
+	if (target == GL_TEXTURE_CUBE_MAP_ARRAY &&
+	    !piglit_is_extension_supported("GL_ARB_texture_cube_map_array")) {
+		printf("no cube map arrays here\n");
+		free(got);
+		return PIGLIT_SKIP;
+	}
+	tex = target == GL_TEXTURE_CUBE_MAP ? cube_map() :
+		target == GL_TEXTURE_3D ? texture_3d(6) : array(target);
 	glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, tex, 0);
 	glClearColor(1, 1, 1, 1);
 	glClear(GL_COLOR_BUFFER_BIT);
@@ -200,21 +227,25 @@ layered(void *data)
 	glEnable(GL_KBUFFER_PROGRAM_MESA);
 	kb_draw(&kb);
 	kb_draw(&kb);
-	if (cube) {
+	if (target == GL_TEXTURE_CUBE_MAP) {
 		for (int f = 0; f < 6; f++)
 			glGetTexImage(GL_TEXTURE_CUBE_MAP_POSITIVE_X + f, 0,
 				      GL_RGBA, GL_FLOAT,
 				      got + f * W * W * 4);
 	} else {
-		glGetTexImage(GL_TEXTURE_3D, 0, GL_RGBA, GL_FLOAT, got);
+		glGetTexImage(target, 0, GL_RGBA, GL_FLOAT, got);
 	}
-	for (int i = 0; i < 6 * W * W * 4 && pass; i++) {
-		const int e = i / (W * W * 4);
+	for (int i = 0; i < 6 * W * height * 4 && pass; i++) {
+		const int e = i / (W * height * 4);
 
 		pass = got[i] == (e + 2) * (e + 2);
 		if (!pass)
 			printf("layer %d: %g\n", e, got[i]);
 	}
+	/* There is no seventh. */
+	kb_program("MOV result.kbuffer[6], 1;");
+	kb_draw(&kb);
+	pass = piglit_check_gl_error(GL_INVALID_OPERATION) && pass;
 	free(got);
 	glDeleteTextures(1, &tex);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
@@ -318,8 +349,10 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("rectangle", rectangle, NULL),
 	KB_SUBTEST("cube-face", cube_face, NULL),
 	KB_SUBTEST("3d-slice", slice, NULL),
-	KB_SUBTEST("layered-3d", layered, NULL),
-	KB_SUBTEST("layered-cube", layered, "cube"),
+	KB_SUBTEST("layered-3d", layered, GL_TEXTURE_3D),
+	KB_SUBTEST("layered-cube", layered, GL_TEXTURE_CUBE_MAP),
+	KB_SUBTEST("layered-cube-array", layered, GL_TEXTURE_CUBE_MAP_ARRAY),
+	KB_SUBTEST("layered-1d-array", layered, GL_TEXTURE_1D_ARRAY),
 	KB_SUBTEST("sampled-afterwards", sampled_afterwards, NULL),
 	KB_SUBTEST("sizes", sizes, NULL),
 	KB_SUBTEST("larger-than-framebuffer", larger_than_framebuffer, NULL),

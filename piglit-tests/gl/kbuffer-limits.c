@@ -39,20 +39,43 @@ entries(void *data)
 		max_entries() == 64 ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
-/** The minima of ARB_fragment_program. */
+/* The minimum values of the specification. */
+#define MIN_INSTRUCTIONS 4096
+#define MIN_TEX_INSTRUCTIONS 256
+#define MIN_TEX_INDIRECTIONS 256
+#define MIN_TEMPORARIES 256
+#define MIN_PARAMETERS 256
+#define MIN_LOCAL_PARAMETERS 256
+#define MIN_ENV_PARAMETERS 256
+
 static enum piglit_result
-arb_minima(void *data)
+minimum_values(void *data)
 {
-	static const struct { GLenum pname; int min; } limits[] = {
-		{ GL_MAX_PROGRAM_INSTRUCTIONS_ARB, 72 },
-		{ GL_MAX_PROGRAM_ALU_INSTRUCTIONS_ARB, 48 },
-		{ GL_MAX_PROGRAM_TEX_INSTRUCTIONS_ARB, 24 },
-		{ GL_MAX_PROGRAM_TEX_INDIRECTIONS_ARB, 4 },
-		{ GL_MAX_PROGRAM_TEMPORARIES_ARB, 16 },
-		{ GL_MAX_PROGRAM_PARAMETERS_ARB, 24 },
-		{ GL_MAX_PROGRAM_ATTRIBS_ARB, 10 },
-		{ GL_MAX_PROGRAM_LOCAL_PARAMETERS_ARB, 24 },
-		{ GL_MAX_PROGRAM_ENV_PARAMETERS_ARB, 24 },
+	GLint draw_buffers = 0;
+
+	glGetIntegerv(GL_MAX_DRAW_BUFFERS, &draw_buffers);
+
+	const int attribs = 1 + draw_buffers + max_entries();
+	const struct { GLenum pname; int min; } limits[] = {
+		{ GL_MAX_PROGRAM_INSTRUCTIONS_ARB, MIN_INSTRUCTIONS },
+		{ GL_MAX_PROGRAM_NATIVE_INSTRUCTIONS_ARB, MIN_INSTRUCTIONS },
+		{ GL_MAX_PROGRAM_ALU_INSTRUCTIONS_ARB, MIN_INSTRUCTIONS },
+		{ GL_MAX_PROGRAM_NATIVE_ALU_INSTRUCTIONS_ARB,
+		  MIN_INSTRUCTIONS },
+		{ GL_MAX_PROGRAM_TEX_INSTRUCTIONS_ARB, MIN_TEX_INSTRUCTIONS },
+		{ GL_MAX_PROGRAM_NATIVE_TEX_INSTRUCTIONS_ARB,
+		  MIN_TEX_INSTRUCTIONS },
+		{ GL_MAX_PROGRAM_TEX_INDIRECTIONS_ARB, MIN_TEX_INDIRECTIONS },
+		{ GL_MAX_PROGRAM_NATIVE_TEX_INDIRECTIONS_ARB,
+		  MIN_TEX_INDIRECTIONS },
+		{ GL_MAX_PROGRAM_TEMPORARIES_ARB, MIN_TEMPORARIES },
+		{ GL_MAX_PROGRAM_NATIVE_TEMPORARIES_ARB, MIN_TEMPORARIES },
+		{ GL_MAX_PROGRAM_PARAMETERS_ARB, MIN_PARAMETERS },
+		{ GL_MAX_PROGRAM_NATIVE_PARAMETERS_ARB, MIN_PARAMETERS },
+		{ GL_MAX_PROGRAM_ATTRIBS_ARB, attribs },
+		{ GL_MAX_PROGRAM_NATIVE_ATTRIBS_ARB, attribs },
+		{ GL_MAX_PROGRAM_LOCAL_PARAMETERS_ARB, MIN_LOCAL_PARAMETERS },
+		{ GL_MAX_PROGRAM_ENV_PARAMETERS_ARB, MIN_ENV_PARAMETERS },
 	};
 	bool pass = true;
 
@@ -66,6 +89,88 @@ arb_minima(void *data)
 		       limits[i].min);
 		pass = false;
 	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/**
+ * A program that is at all of these values at once loads and runs: temporaries
+ * that are all alive, of parameters of both kinds; lookups that each depend on
+ * the one before; sums of them.
+ */
+static enum piglit_result
+minimum_values_at_once(void *data)
+{
+	enum { LINE = 80, LOCALS = MIN_PARAMETERS / 2 };
+	/* Texel i leads to texel i + 1, and to 0 from the last. */
+	static const float texels[8] = {
+		1.5 / 8, 2.5 / 8, 3.5 / 8, 4.5 / 8, 5.5 / 8, 6.5 / 8, 7.5 / 8,
+		.5 / 8
+	};
+	struct kb kb = kb_create(GL_RGBA32F, 1, 0, 8, 8);
+	const GLuint tex = kb_new_texture();
+	char *body = calloc(MIN_INSTRUCTIONS + MIN_TEMPORARIES, LINE);
+	char *end = body;
+	float sum = 0, last = .5f / 8;
+	int instructions = 0;
+	bool pass;
+
+	glBindTexture(GL_TEXTURE_1D, tex);
+	glTexImage1D(GL_TEXTURE_1D, 0, GL_R32F, 8, 0, GL_RED, GL_FLOAT, texels);
+	glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+
+	/* Temporary 0 is the coordinate, from the entry's alpha. */
+	end += sprintf(end, "TEMP t0;\nMOV t0, kbuffer[0].w;\n");
+	instructions++;
+	for (int i = 1; i < MIN_TEMPORARIES; i++, instructions++)
+		end += sprintf(end, "TEMP t%d;\nMUL t%d, kbuffer[0], "
+			       "program.%s[%d];\n", i, i,
+			       i < LOCALS ? "local" : "env", i % LOCALS);
+	for (int i = 0; i < MIN_TEX_INSTRUCTIONS; i++, instructions++) {
+		end += sprintf(end, "TEX t0, t0, texture[0], 1D;\n");
+		last = texels[(int)(last * 8)];
+	}
+	sum = 1;
+	for (int i = 2; instructions < MIN_INSTRUCTIONS - 2; instructions++) {
+		end += sprintf(end, "ADD t1, t1, t%d;\n", i);
+		sum += i % 5;
+		i = i + 1 < MIN_TEMPORARIES ? i + 1 : 2;
+	}
+	/* The last parameter, which is local number 0. */
+	end += sprintf(end, "MUL t1.w, t0.x, program.local[0];\n");
+	sprintf(end, "MOV result.kbuffer[0], t1;");
+	kb_program(body);
+	for (int i = 0; i < MIN_PARAMETERS; i++) {
+		const float v = i % 5;
+
+		if (i < LOCALS)
+			glProgramLocalParameter4fARB(GL_KBUFFER_PROGRAM_MESA,
+						     i, v, v, v, v);
+		else
+			glProgramEnvParameter4fARB(GL_KBUFFER_PROGRAM_MESA,
+						   i % LOCALS, v, v, v, v);
+	}
+	glProgramLocalParameter4fARB(GL_KBUFFER_PROGRAM_MESA, 0, 8, 8, 8, 8);
+
+	pass = program_value(GL_PROGRAM_INSTRUCTIONS_ARB) >= MIN_INSTRUCTIONS &&
+		program_value(GL_PROGRAM_TEX_INSTRUCTIONS_ARB) ==
+		MIN_TEX_INSTRUCTIONS &&
+		program_value(GL_PROGRAM_TEMPORARIES_ARB) == MIN_TEMPORARIES &&
+		program_value(GL_PROGRAM_PARAMETERS_ARB) == MIN_PARAMETERS &&
+		program_value(GL_PROGRAM_UNDER_NATIVE_LIMITS_ARB) == 1;
+	if (!pass)
+		printf("%d instructions, %d of texture, %d temporaries, "
+		       "%d parameters, native %d\n",
+		       program_value(GL_PROGRAM_INSTRUCTIONS_ARB),
+		       program_value(GL_PROGRAM_TEX_INSTRUCTIONS_ARB),
+		       program_value(GL_PROGRAM_TEMPORARIES_ARB),
+		       program_value(GL_PROGRAM_PARAMETERS_ARB),
+		       program_value(GL_PROGRAM_UNDER_NATIVE_LIMITS_ARB));
+	kb_fill(&kb, 0, 1, 2, 3, .5f / 8);
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	kb_draw(&kb);
+	pass = kb_expect(&kb, 0, 0, sum, 2 * sum, 3 * sum, 8 * last) && pass;
+	free(body);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
@@ -211,7 +316,8 @@ temporaries(void *data)
 
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("entries", entries, NULL),
-	KB_SUBTEST("arb-minima", arb_minima, NULL),
+	KB_SUBTEST("minimum-values", minimum_values, NULL),
+	KB_SUBTEST("minimum-values-at-once", minimum_values_at_once, NULL),
 	KB_SUBTEST("instructions-for-all-entries",
 		   instructions_for_all_entries, NULL),
 	KB_SUBTEST("long-program-runs", long_program_runs, NULL),

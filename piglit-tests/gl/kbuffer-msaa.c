@@ -194,6 +194,71 @@ shader_once(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/**
+ * A fragment shader that runs for each sample gives each its own color; the
+ * program runs no more often, and its position stays that of the pixel.
+ */
+static enum piglit_result
+sample_shading(void *data)
+{
+	static const char by_sample_id[] =
+		"#version 150 compatibility\n"
+		"#extension GL_ARB_sample_shading: require\n"
+		"out vec4 o;\n"
+		"void main() { o = vec4(gl_SampleID + 1, 0, 0, 0); }\n";
+	/* One that looks at what differs only if it runs for each sample. */
+	static const char by_position[] =
+		"#version 150 compatibility\nout vec4 o;\n"
+		"void main() { o = vec4(fract(gl_FragCoord.xy), 0, 0); }\n";
+	struct kb_ms ms = kb_ms_create(2, 0);
+	bool pass = true;
+
+	piglit_require_extension("GL_ARB_sample_shading");
+	kb_program("ADD result.kbuffer[0], kbuffer[0], fragment.color;\n"
+		   "MOV result.kbuffer[1], fragment.position;");
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	for (int min = 0; min < 2 && pass; min++) {
+		float *got, *position;
+		int different = 0;
+
+		glClear(GL_COLOR_BUFFER_BIT);
+		kb_use_glsl("#version 130\n"
+			    "void main() { gl_Position = gl_Vertex; }\n",
+			    NULL, min ? by_position : by_sample_id);
+		if (min) {
+			glEnable(GL_SAMPLE_SHADING);
+			glMinSampleShading(1);
+		}
+		kb_draw(&ms.kb);
+		kb_draw(&ms.kb);
+		/* Mesa's PopAttrib does not. */
+		glDisable(GL_SAMPLE_SHADING);
+		got = kb_ms_read(&ms, ms.tex[0], 0);
+		position = kb_ms_read(&ms, ms.tex[1], 0);
+		for (int i = 0; i < W * W * KB_SAMPLES && pass; i++) {
+			const int pixel = i % (W * W), s = i / (W * W);
+
+			pass = position[4 * i] == pixel % W + .5f &&
+				position[4 * i + 1] == pixel / W + .5f &&
+				(min || got[4 * i] == 2 * (s + 1));
+			if (!pass)
+				printf("pixel %d, sample %d: color %g, "
+				       "position %g %g\n", pixel, s,
+				       got[4 * i], position[4 * i],
+				       position[4 * i + 1]);
+			different += got[4 * i] != got[4 * pixel];
+		}
+		if (!different) {
+			printf("all samples have the same color\n");
+			pass = false;
+		}
+		free(got);
+		free(position);
+	}
+	glMinSampleShading(0);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 /** KIL and glSampleMaski work by sample; alpha to coverage is before. */
 static enum piglit_result
 masks(void *data)
@@ -270,6 +335,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("depth-of-sample-with-offset", depth_of_sample, "offset"),
 	KB_SUBTEST("depth-test-of-sample", depth_test_of_sample, NULL),
 	KB_SUBTEST("shader-once", shader_once, NULL),
+	KB_SUBTEST("sample-shading", sample_shading, NULL),
 	KB_SUBTEST("masks", masks, NULL),
 	KB_SUBTEST("alpha-to-coverage", alpha_to_coverage, NULL),
 	KB_SUBTEST_END

@@ -256,10 +256,7 @@ early_tests(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
-/**
- * Without a depth test z is that which the test would use.  With a depth
- * buffer of fewer bits it may be rounded to them, but no more.
- */
+/** Without a depth test z is that which the test would use. */
 static enum piglit_result
 no_depth_test(void *data)
 {
@@ -271,13 +268,49 @@ no_depth_test(void *data)
 	slanted(-1, 1);
 	got = kb_read(&kb, 0);
 	for (int i = 0; i < W * W && pass; i++) {
-		/* One step of 16 bits. */
-		pass = fabs(got[4 * i + 2] - (i % W + .5) / W) <= 1 / 65535.;
+		/* A plane equation in single precision. */
+		pass = fabs(got[4 * i + 2] - (i % W + .5) / W) <= 1e-6;
 		if (!pass)
 			printf("(%d, %d): z %.9g\n", i % W, i / W,
 			       got[4 * i + 2]);
 	}
 	free(got);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/**
+ * z is not converted to the format of the depth buffer: fragments that are
+ * closer than one step of it have different ones, with the depth test or not.
+ */
+static enum piglit_result
+not_converted(void *data)
+{
+	struct kb kb = make((GLenum)(intptr_t)data);
+	/* Less than a step of 16 bits over all, of 24 bits from pixel to pixel. */
+	const double range = 1 / 33554432. * W / 2;
+	bool pass = true;
+
+	glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+	for (int test = 0; test < 2 && pass; test++) {
+		float *got;
+
+		if (test)
+			glEnable(GL_DEPTH_TEST);
+		else
+			glDisable(GL_DEPTH_TEST);
+		slanted(0, range);
+		got = kb_read(&kb, 0);
+		for (int i = 0; i < W * W && pass; i++) {
+			const double z = (i % W + .5) / W * range;
+
+			pass = fabs(got[4 * i + 2] - z) <= range / W / 16;
+			if (!pass)
+				printf("(%d, %d): z %.9g, expected %.9g\n",
+				       i % W, i / W, got[4 * i + 2], z);
+		}
+		free(got);
+	}
+	glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
@@ -296,6 +329,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("no-depth-test-32f", no_depth_test, GL_DEPTH_COMPONENT32F),
 	KB_SUBTEST("no-depth-test-24", no_depth_test, GL_DEPTH_COMPONENT24),
 	KB_SUBTEST("no-depth-test-16", no_depth_test, GL_DEPTH_COMPONENT16),
+	KB_SUBTEST("not-converted-24", not_converted, GL_DEPTH_COMPONENT24),
+	KB_SUBTEST("not-converted-16", not_converted, GL_DEPTH_COMPONENT16),
 	KB_SUBTEST_END
 };
 

@@ -191,6 +191,93 @@ with_fragment_stage(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+static const char two_targets[] = "!!ARBfp1.0\n"
+	"OPTION MESA_kbuffer_program;\nTEMP t;\n"
+	"TEX t, 0, texture[0], 2D;\nTEX t, t, texture[0], 3D;\nEND\n";
+
+/** The two stages sample different targets of one unit. */
+static enum piglit_result
+other_target(void *data)
+{
+	static const float a[4] = { 1, 2, 3, 4 }, b[4] = { 10, 20, 30, 40 };
+	static const char fp[] = "!!ARBfp1.0\n"
+		"TEX result.color, 0, texture[0], 2D;\nEND\n";
+	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, W);
+	GLuint tex[2];
+	bool pass;
+
+	tex[0] = make_texture(GL_TEXTURE_2D, 1, 1, 1, a);
+	tex[1] = make_texture(GL_TEXTURE_3D, 1, 1, 1, b);
+	kb_program("TEMP t;\nTEX t, 0, texture[0], 3D;\n"
+		   "MAD result.kbuffer[0], fragment.color, 100, t;");
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	kb_fragment_value(0, 0, 0, 0);
+	pass = kb_load(GL_FRAGMENT_PROGRAM_ARB, fp, strlen(fp)) == GL_NO_ERROR;
+	kb_draw(&kb);
+	pass = kb_expect(&kb, 0, 0, 110, 220, 330, 440) && pass;
+
+	/* Nor is it an error of GLSL, whose own samplers may not do that. */
+	kb_use_glsl("#version 130\n"
+		    "void main() { gl_Position = gl_Vertex; }\n", NULL,
+		    "#version 130\nuniform sampler2D s;\n"
+		    "void main() { gl_FragColor = texture(s, vec2(0)); }\n");
+	kb_fill(&kb, 0, 0, 0, 0, 0);
+	kb_draw(&kb);
+	pass = kb_expect(&kb, 0, 0, 110, 220, 330, 440) && pass;
+
+	/* One program may not, as in a fragment program. */
+	pass = kb_load(GL_KBUFFER_PROGRAM_MESA, two_targets,
+		       strlen(two_targets)) == GL_INVALID_OPERATION && pass;
+	glDeleteTextures(2, tex);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/** All image units, by the fragment stage and by the program at once. */
+static enum piglit_result
+all_units(void *data)
+{
+	struct kb kb = kb_create(GL_RGBA32F, 1, 0, W, W);
+	char fp[4096] = "!!ARBfp1.0\nTEMP s, t;\nMOV s, 0;\n";
+	char body[4096] = "TEMP s, t;\nMOV s, 0;\n", line[100];
+	GLuint tex[64];
+	GLint units = 0;
+	float sum = 0;
+	bool pass;
+
+	glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
+	units = MIN2(units, ARRAY_SIZE(tex));
+	for (int i = 0; i < units; i++) {
+		const float texel[4] = { i + 1, 0, 0, 0 };
+
+		glActiveTexture(GL_TEXTURE0 + i);
+		tex[i] = make_texture(GL_TEXTURE_2D, 1, 1, 1, texel);
+		snprintf(line, sizeof(line), "TEX t, 0, texture[%d], 2D;\n"
+			 "MAD s, t, %d, s;\n", i, i + 1);
+		strcat(fp, line);
+		strcat(body, line);
+		sum += (i + 1) * (i + 1);
+	}
+	strcat(fp, "MOV result.color, s;\nEND\n");
+	strcat(body, "MAD result.kbuffer[0], fragment.color, 100, s;");
+	kb_fragment_value(0, 0, 0, 0);
+	pass = kb_load(GL_FRAGMENT_PROGRAM_ARB, fp, strlen(fp)) == GL_NO_ERROR;
+	kb_program(body);
+	glEnable(GL_KBUFFER_PROGRAM_MESA);
+	kb_draw(&kb);
+	pass = kb_expect(&kb, 0, 0, 101 * sum, 0, 0, 0) && pass;
+
+	/* One more is no unit of either. */
+	snprintf(body, sizeof(body), "!!ARBfp1.0\n"
+		 "OPTION MESA_kbuffer_program;\nTEMP t;\n"
+		 "TEX t, 0, texture[%d], 2D;\nEND\n", units);
+	pass = (units == ARRAY_SIZE(tex) ||
+		kb_load(GL_KBUFFER_PROGRAM_MESA, body, strlen(body)) ==
+		GL_INVALID_OPERATION) && pass;
+	glActiveTexture(GL_TEXTURE0);
+	glDeleteTextures(units, tex);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 /** A lookup whose coordinate is an entry; linear filter; clamping. */
 static enum piglit_result
 table(void *data)
@@ -294,6 +381,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("shadow-2d", shadow, GL_TEXTURE_2D),
 	KB_SUBTEST("shadow-rect", shadow, GL_TEXTURE_RECTANGLE),
 	KB_SUBTEST("with-fragment-stage", with_fragment_stage, NULL),
+	KB_SUBTEST("other-target-than-fragment-stage", other_target, NULL),
+	KB_SUBTEST("all-units", all_units, NULL),
 	KB_SUBTEST("table", table, NULL),
 	KB_SUBTEST("projection-and-bias", projection_and_bias, NULL),
 	KB_SUBTEST("derivatives-level-0", derivatives, 0),

@@ -171,6 +171,68 @@ larger_pass(void *data)
 	return peel_end(&p, pass);
 }
 
+/**
+ * The depth of a fragment does not depend on the fragment shader, so that each
+ * pass can have another: all are the layers of a larger pass with one shader.
+ */
+static enum piglit_result
+other_shaders(void *data)
+{
+	enum { K = 3, NUM = 40, PASSES = 5 };
+	static const struct { const char *declarations, *statements; }
+	shaders[PASSES] = {
+		{ "", "" },
+		{ "", "if (gl_FragCoord.x < 0) discard;" },
+		{ "", "if (dFdx(gl_FragCoord.z) > 1e9) discard;" },
+		{ "", "if (gl_FragCoord.w < -1 && !gl_FrontFacing) discard;" },
+		{ "#extension GL_ARB_shader_bit_encoding: require\n",
+		  "if (floatBitsToUint(gl_FragCoord.z) == 1u) discard;" },
+	};
+	const struct peel_shape shape = {
+		PASSES * K, 60, 45, 0, *(const GLenum *)data, { GL_R32UI }
+	};
+	struct peel_shape small = shape;
+	struct peel_vertex vertices[3 * NUM];
+	struct peel whole = peel_create(&shape), p;
+	const int n = K * shape.width * shape.height;
+	uint32_t *depth, *color;
+	bool pass = true;
+
+	peel_seed(12);
+	peel_random_triangles(vertices, NUM, 0);
+	peel_draw_vertices(GL_TRIANGLES, vertices, 3 * NUM);
+	depth = peel_read_depth(&whole);
+	color = peel_read_color(&whole, 0);
+
+	small.layers = K;
+	p = peel_create(&small);
+	for (int i = 0; i < PASSES && pass; i++) {
+		uint32_t *d, *c;
+
+		if (i > 0) {
+			glFramebufferParameteri(GL_FRAMEBUFFER,
+				GL_DEPTH_PEELING_FIRST_LAYER_MESA, i * K);
+			peel_clear(&p);
+		}
+		peel_use_program(&p, shaders[i].declarations,
+				 shaders[i].statements);
+		peel_draw_vertices(GL_TRIANGLES, vertices, 3 * NUM);
+		d = peel_read_depth(&p);
+		c = peel_read_color(&p, 0);
+		pass = memcmp(d, depth + i * n, n * 4) == 0 &&
+			memcmp(c, color + i * n * 4, n * 16) == 0;
+		if (!pass)
+			printf("pass %d is not layers %d to %d\n", i, i * K,
+			       i * K + K - 1);
+		free(d);
+		free(c);
+	}
+	free(depth);
+	free(color);
+	peel_end(&whole, pass);
+	return peel_end(&p, pass);
+}
+
 /** 0 starts over, from any pass, as often as one likes. */
 static enum piglit_result
 start_over(void *data)
@@ -283,6 +345,8 @@ two_framebuffers(void *data)
 #define SCENE(num, depths, func, format) \
 	&(const struct scene) { num, depths, GL_##func, GL_DEPTH_COMPONENT##format }
 
+static const GLenum d32f = GL_DEPTH_COMPONENT32F, d24 = GL_DEPTH_COMPONENT24,
+	d16 = GL_DEPTH_COMPONENT16;
 static const int full = 4, short_of_full = 3, one_depth = 1, depths = 5;
 
 const struct piglit_subtest kbuffer_subtests[] = {
@@ -297,6 +361,9 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("mixed-16", mixed, SCENE(40, 5, LESS, 16)),
 	KB_SUBTEST("mixed-24-many-depths", mixed, SCENE(60, 1000, LESS, 24)),
 	KB_SUBTEST("larger-pass", larger_pass, NULL),
+	KB_SUBTEST("other-shaders-32f", other_shaders, &d32f),
+	KB_SUBTEST("other-shaders-24", other_shaders, &d24),
+	KB_SUBTEST("other-shaders-16", other_shaders, &d16),
 	KB_SUBTEST("start-over", start_over, NULL),
 	KB_SUBTEST("exhausted-full", exhausted, &full),
 	KB_SUBTEST("exhausted-short", exhausted, &short_of_full),

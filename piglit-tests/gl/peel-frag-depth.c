@@ -67,6 +67,30 @@ in_range(void *data)
 	return peel_end(&p, peel_check(&p));
 }
 
+/** With early tests the shader's depth is not the fragment's. */
+static enum piglit_result
+early_tests(void *data)
+{
+	struct peel p = make(*(const GLenum *)data);
+
+	if (!piglit_is_extension_supported("GL_ARB_shader_image_load_store")) {
+		printf("no early fragment tests here\n");
+		return peel_end(&p, true) == PIGLIT_PASS ? PIGLIT_SKIP :
+			PIGLIT_FAIL;
+	}
+	peel_use_program(&p, "#extension GL_ARB_shader_image_load_store: "
+			 "require\nlayout(early_fragment_tests) in;\n",
+			 "gl_FragDepth = float(id) / 32.;");
+	for (int i = 0; i < NUM; i++) {
+		const struct peel_quad q =
+			peel_full(&p, peel_depth(p.depth, peel_depth_code(
+				p.depth, (i * 5 % NUM + 1) / 32.)), i);
+
+		peel_draw(&p, &q, 1);
+	}
+	return peel_end(&p, peel_check(&p));
+}
+
 /** NaN among others: as third of eight, and first, and last. */
 static enum piglit_result
 nan_depth(void *data)
@@ -196,6 +220,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("in-range", in_range, &d32f),
 	KB_SUBTEST("in-range-24", in_range, &d24),
 	KB_SUBTEST("in-range-16", in_range, &d16),
+	KB_SUBTEST("early-tests", early_tests, &d32f),
+	KB_SUBTEST("early-tests-16", early_tests, &d16),
 	KB_SUBTEST("nan", nan_depth, &d32f),
 	KB_SUBTEST("nan-16", nan_depth, &d16),
 	KB_SUBTEST("clamped", clamped, &d32f),

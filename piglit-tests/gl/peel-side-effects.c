@@ -36,6 +36,17 @@ static const struct counter image_store = { IMAGE,
 	"imageStore(counts, at, imageLoad(counts, at) + 1u);"
 };
 static const struct counter second_pass = { IMAGE, ADD_TO_IMAGE, true };
+/** Insertion is none of the tests that can be early. */
+static const struct counter early_tests = {
+	"GL_ARB_shader_image_load_store", GL_TEXTURE_2D, W * H,
+	"layout(early_fragment_tests) in;\n"
+	"layout(r32ui) uniform uimage2D counts;\n", ADD_TO_IMAGE
+};
+static const struct counter early_tests_second_pass = {
+	"GL_ARB_shader_image_load_store", GL_TEXTURE_2D, W * H,
+	"layout(early_fragment_tests) in;\n"
+	"layout(r32ui) uniform uimage2D counts;\n", ADD_TO_IMAGE, true
+};
 static const struct counter storage_buffer = {
 	"GL_ARB_shader_storage_buffer_object", GL_SHADER_STORAGE_BUFFER, W * H,
 	"layout(std430) buffer Counts { uint counts[]; };\n",
@@ -166,6 +177,9 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("storage-buffer", invocations, &storage_buffer),
 	KB_SUBTEST("atomic-counter", invocations, &atomic_counter),
 	KB_SUBTEST("second-pass", invocations, &second_pass),
+	KB_SUBTEST("early-tests", invocations, &early_tests),
+	KB_SUBTEST("early-tests-second-pass", invocations,
+		   &early_tests_second_pass),
 	KB_SUBTEST_END
 };
 
