@@ -195,9 +195,7 @@ first_draw(void *data)
 			break;
 		pass = peel_check(&p) && pass;
 
-		/* What is enabled again tries again. */
-		glDisable(GL_DEPTH_PEELING_MESA);
-		glEnable(GL_DEPTH_PEELING_MESA);
+		/* The next draw tries again, without another command. */
 		draw_scene(&p);
 		pass = peel_check(&p) && pass;
 	}

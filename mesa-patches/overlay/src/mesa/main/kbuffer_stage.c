@@ -9,6 +9,7 @@
  */
 
 #include "main/depth_peeling.h"
+#include "main/draw_validate.h"
 #include "main/errors.h"
 #include "main/kbuffer.h"
 #include "main/kbuffer_stage.h"
@@ -24,6 +25,10 @@ _mesa_explain_draw_error(struct gl_context *ctx, const char *caller)
        (!_mesa_kbuffer_check_draw(ctx, reason) ||
         !_mesa_check_peel_draw(ctx, reason)))
       _mesa_error(ctx, error, "%s(%s)", caller, reason);
+
+   /* What had no memory then tries again, for the next draw. */
+   if (error == GL_OUT_OF_MEMORY)
+      _mesa_update_valid_to_render_state(ctx);
 
    return error;
 }
