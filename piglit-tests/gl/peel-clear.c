@@ -159,6 +159,56 @@ clear_buffer(void *data)
 	return peel_end(&p, peel_check(&p) && pass);
 }
 
+/**
+ * Integers that would be zero or denormal as floats, in the tiles that are
+ * drawn to and in others.
+ */
+static enum piglit_result
+integers(void *data)
+{
+	static const uint32_t values[][4] = {
+		{ 1, 0, 0, 0 }, { 8388607, 1, 2, 3 }, { 0x80000000, 0, 0, 0 },
+		{ 0, 0, 0, 1 }, { 0x80000001, 0x807fffff, 0, 5 },
+	};
+	const GLenum format = *(const GLenum *)data;
+	bool pass = true;
+
+	for (int i = 0; i < ARRAY_SIZE(values) && pass; i++) {
+		struct peel p = peel_create(&(struct peel_shape) {
+			K, W, H, 0, GL_DEPTH_COMPONENT32F, { format } });
+		const struct peel_quad q = { 3, 2, 40, 20, .5, 8388600 + i };
+		uint32_t stored[4] = { 0 };
+
+		for (int c = 0; c < 4 && p.color[0]->bits[c]; c++)
+			stored[c] = values[i][c];
+		if (p.color[0]->kind == PEEL_INT)
+			glClearBufferiv(GL_COLOR, 0, (const GLint *)values[i]);
+		else
+			glClearBufferuiv(GL_COLOR, 0, values[i]);
+		model_clear(&p, 0, 0, W, H, 0, stored, 0);
+		peel_draw(&p, &q, 1);
+		pass = peel_check(&p);
+		/* Once more, by a draw that does not peel. */
+		glClearBufferfv(GL_DEPTH, 0, &(const float) { 1 });
+		if (p.color[0]->kind == PEEL_INT)
+			glClearBufferiv(GL_COLOR, 0, (const GLint *)values[i]);
+		else
+			glClearBufferuiv(GL_COLOR, 0, values[i]);
+		model_clear(&p, 0, 0, W, H, 0, NULL, 0x3f800000);
+		model_clear(&p, 0, 0, W, H, 0, stored, 0);
+		glDisable(GL_DEPTH_PEELING_MESA);
+		glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+		peel_draw_gl(&p, &q, 1);
+		glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+		pass = peel_check(&p) && pass;
+		if (!pass)
+			printf("cleared to %08x %08x %08x %08x\n", values[i][0],
+			       values[i][1], values[i][2], values[i][3]);
+		peel_end(&p, pass);
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 /** Depth without color, and color without depth. */
 static enum piglit_result
 separately(void *data)
@@ -270,6 +320,7 @@ often(void *data)
 }
 
 static const GLenum less = GL_LESS, greater = GL_GREATER;
+static const GLenum r32ui = GL_R32UI, r32i = GL_R32I, rgba32ui = GL_RGBA32UI;
 
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("clear-depth", clear_depth, &less),
@@ -277,6 +328,9 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("changed", changed, NULL),
 	KB_SUBTEST("scissored", scissored, NULL),
 	KB_SUBTEST("clear-buffer", clear_buffer, NULL),
+	KB_SUBTEST("integers-r32ui", integers, &r32ui),
+	KB_SUBTEST("integers-r32i", integers, &r32i),
+	KB_SUBTEST("integers-rgba32ui", integers, &rgba32ui),
 	KB_SUBTEST("separately", separately, NULL),
 	KB_SUBTEST("masked", masked, NULL),
 	KB_SUBTEST("one-layer", one_layer, NULL),
