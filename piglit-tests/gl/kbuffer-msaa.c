@@ -62,6 +62,61 @@ per_covered_sample(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** Samples of pixels outside of the scissor box are not covered. */
+static enum piglit_result
+scissor(void *data)
+{
+	static const int boxes[][4] = {
+		{ 5, 3, 9, 8 }, { 1, 1, 30, 30 }, { 8, 8, 8, 8 },
+		{ 13, 0, 1, W }, { 0, 17, W, 2 },
+	};
+	const GLenum mode = *(const GLenum *)data;
+	bool pass = true;
+
+	kb_fragment_value(1, 1, 1, 1);
+	kb_program("ADD result.kbuffer[0], kbuffer[0], fragment.color;");
+	glPointSize(60);
+	glLineWidth(50);
+	for (int i = 0; i < ARRAY_SIZE(boxes) && pass; i++) {
+		const int *box = boxes[i];
+		struct kb_ms ms = kb_ms_create(1, 0);
+		float *got;
+
+		glEnable(GL_SCISSOR_TEST);
+		glScissor(box[0], box[1], box[2], box[3]);
+		glEnable(GL_KBUFFER_PROGRAM_MESA);
+		glBegin(mode);
+		if (mode == GL_POINTS) {
+			glVertex2f(0, 0);
+		} else if (mode == GL_LINES) {
+			glVertex2f(-2, 0);
+			glVertex2f(2, 0);
+		} else {
+			glVertex2f(-1, -1);
+			glVertex2f(4, -1);
+			glVertex2f(-1, 4);
+		}
+		glEnd();
+		glDisable(GL_SCISSOR_TEST);
+		glDisable(GL_KBUFFER_PROGRAM_MESA);
+		got = kb_ms_read(&ms, ms.tex[0], 0);
+		for (int j = 0; j < W * W * KB_SAMPLES && pass; j++) {
+			const int x = j % W, y = j / W % W;
+			const bool inside = x >= box[0] && y >= box[1] &&
+				x < box[0] + box[2] && y < box[1] + box[3];
+
+			pass = got[4 * j] == inside;
+			if (!pass)
+				printf("box %d, %d, %d x %d: pixel (%d, %d), "
+				       "sample %d: %g\n", box[0], box[1],
+				       box[2], box[3], x, y, j / (W * W),
+				       got[4 * j]);
+		}
+		free(got);
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 /** fragment.position.z is what the depth buffer gets for the sample. */
 static enum piglit_result
 depth_of_sample(void *data)
@@ -328,9 +383,15 @@ alpha_to_coverage(void *data)
 	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+static const GLenum points = GL_POINTS, lines = GL_LINES,
+	triangles = GL_TRIANGLES;
+
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("per-covered-sample", per_covered_sample, 0),
 	KB_SUBTEST("per-covered-sample-in-layers", per_covered_sample, 2),
+	KB_SUBTEST("scissored-triangles", scissor, &triangles),
+	KB_SUBTEST("scissored-lines", scissor, &lines),
+	KB_SUBTEST("scissored-points", scissor, &points),
 	KB_SUBTEST("depth-of-sample", depth_of_sample, NULL),
 	KB_SUBTEST("depth-of-sample-with-offset", depth_of_sample, "offset"),
 	KB_SUBTEST("depth-test-of-sample", depth_test_of_sample, NULL),
