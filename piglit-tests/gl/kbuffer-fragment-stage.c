@@ -254,6 +254,90 @@ arb_unwritten(void *data)
 		kb_expect(&kb, 1, 0, 5, 6, 7, 8) ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** Two triangles: the left half faces the viewer, the right half does not. */
+static void
+draw_both_faces(void)
+{
+	static const float corners[12][2] = {
+		{ -1, -1 }, { 0, -1 }, { 0, 1 }, { -1, -1 }, { 0, 1 }, { -1, 1 },
+		{ 0, -1 }, { 1, 1 }, { 1, -1 }, { 0, -1 }, { 0, 1 }, { 1, 1 },
+	};
+
+	glBegin(GL_TRIANGLES);
+	for (int i = 0; i < 12; i++)
+		glVertex2fv(corners[i]);
+	glEnd();
+}
+
+/** gl_FrontFacing in expressions. */
+static enum piglit_result
+front_facing(void *data)
+{
+	struct kb kb = make("MOV result.kbuffer[0], fragment.color;");
+	GLuint program = kb_use_glsl(vs, NULL, "#version 130\n"
+		"uniform float yes;\nout vec4 o;\n"
+		"void main() {\n"
+		"  o = vec4(gl_FrontFacing, yes > 0.0 && !gl_FrontFacing,\n"
+		"           yes < 0.0 || !gl_FrontFacing,\n"
+		"           gl_FrontFacing == (yes > 0.0));\n}\n");
+
+	glUniform1f(glGetUniformLocation(program, "yes"), 1);
+	draw_both_faces();
+	return kb_expect_rect(&kb, 0, 0, 0, W / 2, W, 0, 1, 0, 0, 1) &&
+		kb_expect_rect(&kb, 0, W / 2, 0, W / 2, W, 0, 0, 1, 1, 0) ?
+		PIGLIT_PASS : PIGLIT_FAIL;
+}
+
+/** gl_PrimitiveID counts from 0 in each draw, without a geometry shader. */
+static enum piglit_result
+primitive_id(void *data)
+{
+	const GLenum mode = *(const GLenum *)data;
+	const int n = mode == GL_TRIANGLES ? 3 : mode == GL_LINES ? 2 : 1;
+	struct kb kb = make("MOV result.kbuffer[0], fragment.color;");
+	float vertices[3 * W][2];
+	GLushort elements[3 * W];
+
+	/* A primitive over each row of pixels, all but points with clipped ends. */
+	for (int i = 0; i < W; i++) {
+		const float y = 2 * (i + .5f) / W - 1, half = 1.f / W - .001f;
+		const float all[3][2] = {
+			{ n == 1 ? 1.f / W : -2, n == 3 ? y - half : y },
+			{ 1e4, y }, { -2, y + half }
+		};
+
+		memcpy(vertices[n * i], all, n * sizeof *all);
+	}
+	for (int i = 0; i < n * W; i++)
+		elements[i] = i;
+	kb_use_glsl("#version 150 compatibility\n"
+		    "void main() { gl_Position = gl_Vertex; }\n", NULL,
+		    "#version 150 compatibility\nout vec4 o;\n"
+		    "void main() { o = vec4(gl_PrimitiveID, 1, 2, 3); }\n");
+	glVertexPointer(2, GL_FLOAT, 0, vertices);
+	glEnableClientState(GL_VERTEX_ARRAY);
+	glDrawArrays(mode, 0, n * W);
+	glDrawElements(mode, n * W, GL_UNSIGNED_SHORT, elements);
+	glDisableClientState(GL_VERTEX_ARRAY);
+	for (int i = 0; i < W; i++) {
+		if (!kb_expect_rect(&kb, 0, n == 1 ? W / 2 : 0, i,
+				    n == 1 ? 1 : W, 1, 0, i, 1, 2, 3))
+			return PIGLIT_FAIL;
+	}
+	return PIGLIT_PASS;
+}
+
+/** Sprites take another way through softpipe. */
+static enum piglit_result
+primitive_id_of_sprites(void *data)
+{
+	glEnable(GL_POINT_SPRITE);
+	return primitive_id(data);
+}
+
+static const GLenum points = GL_POINTS, lines = GL_LINES,
+	triangles = GL_TRIANGLES;
+
 struct clamp { GLenum mode, format; bool clamped; };
 
 static enum piglit_result
@@ -296,6 +380,11 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("no-output", no_output, NULL),
 	KB_SUBTEST("unwritten-is-black", unwritten, NULL),
 	KB_SUBTEST("arb-unwritten-is-black", arb_unwritten, NULL),
+	KB_SUBTEST("front-facing", front_facing, NULL),
+	KB_SUBTEST("primitive-id-points", primitive_id, &points),
+	KB_SUBTEST("primitive-id-sprites", primitive_id_of_sprites, &points),
+	KB_SUBTEST("primitive-id-lines", primitive_id, &lines),
+	KB_SUBTEST("primitive-id-triangles", primitive_id, &triangles),
 	KB_SUBTEST("clamp-on", clamp, &on),
 	KB_SUBTEST("clamp-on-fixed", clamp, &on_fixed),
 	KB_SUBTEST("clamp-off", clamp, &off),
