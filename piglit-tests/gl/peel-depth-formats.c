@@ -167,6 +167,50 @@ slanted(void *data)
 	return peel_end(&p, peel_check(&p));
 }
 
+/**
+ * texelFetch gives the float that is nearest to code / (2^24 - 1), and so tells
+ * all codes apart.
+ */
+static enum piglit_result
+texel_fetch_24(void *data)
+{
+	enum { SIZE = 64 };
+	struct kb out = kb_create(GL_RGBA32F, 1, 0, SIZE, SIZE);
+	const GLuint tex = kb_new_texture();
+	uint32_t codes[SIZE * SIZE], texels[SIZE * SIZE];
+	float *got;
+	bool pass = true;
+
+	/* Both ends, and all magnitudes. */
+	for (int i = 0; i < SIZE * SIZE; i++) {
+		codes[i] = i < 1024 ? i : i < 2048 ? 0xffffff - (i - 1024) :
+			(i * 2654435761u) >> (8 + i % 20);
+		texels[i] = codes[i] << 8;
+	}
+	kb_use_glsl("#version 150 compatibility\n"
+		    "void main() { gl_Position = gl_Vertex; }\n", NULL,
+		    "#version 150 compatibility\n"
+		    "uniform sampler2D t;\nout vec4 o;\nvoid main() { "
+		    "o = texelFetch(t, ivec2(gl_FragCoord.xy), 0); }\n");
+	glBindTexture(GL_TEXTURE_2D, tex);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH24_STENCIL8, SIZE, SIZE, 0,
+		     GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, texels);
+	kb_draw(&out);
+	got = kb_read(&out, 0);
+	for (int i = 0; i < SIZE * SIZE && pass; i++) {
+		const float wanted = codes[i] / 16777215.0;
+
+		pass = got[4 * i] == wanted;
+		if (!pass)
+			printf("%06x is fetched as %.9g, not as %.9g\n",
+			       codes[i], got[4 * i], wanted);
+	}
+	free(got);
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 static const GLenum d16 = GL_DEPTH_COMPONENT16, d24 = GL_DEPTH_COMPONENT24,
 	d24s8 = GL_DEPTH24_STENCIL8, d32f = GL_DEPTH_COMPONENT32F,
 	d32fs8 = GL_DEPTH32F_STENCIL8;
@@ -265,6 +309,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	FORMAT("32f", &d32f),
 	FORMAT("32f-8", &d32fs8),
 	KB_SUBTEST("16-merged", merged, &d16),
+	KB_SUBTEST("24-8-texel-fetch", texel_fetch_24, NULL),
 	KB_SUBTEST("24-8-stencil", stencil, &d24s8),
 	KB_SUBTEST("32f-8-stencil", stencil, &d32fs8),
 	KB_SUBTEST("offset-out-of-range-16", offset_out_of_range, &d16),

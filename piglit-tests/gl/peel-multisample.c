@@ -10,26 +10,6 @@
 
 #include "peel-common.h"
 
-/**
- * llvmpipe's texelFetch gives codes of 24 bits as their product with the float
- * that is nearest to 1 / (2^24 - 1), half a step too large: undo just that.
- */
-static uint32_t
-depth_24(float value)
-{
-	const float unit = 1 / 16777215.0;
-	uint32_t code = llrint((double)value / unit);
-
-	/* The only two that give the same. */
-	if (value == 1)
-		return 0xffffff;
-	while (code > 0 && code * unit > value)
-		code--;
-	while (code * unit < value)
-		code++;
-	return code;
-}
-
 /** The code of a component from what texelFetch gave, as bits. */
 static uint32_t
 code_of(const struct peel_format *format, int component, uint32_t bits)
@@ -51,8 +31,7 @@ code_of(const struct peel_format *format, int component, uint32_t bits)
 		return b == 32 ? bits : piglit_half_from_float(value) >>
 			(b == 16 ? 0 : 15 - b);
 	case PEEL_DEPTH:
-		return b == 32 ? bits : b == 24 ? depth_24(value) :
-			llrint((double)value * mask);
+		return b == 32 ? bits : llrint((double)value * mask);
 	default:
 		return bits & mask;
 	}
