@@ -6,7 +6,7 @@
 /**
  * \file kbuffer-formats.c
  * Every floating-point and normalized color format that can be rendered to:
- * what the program reads is the texel, what it writes is rounded into the
+ * what the program reads is the texel, what it computes is rounded into the
  * format, what it copies does not change, and a component that the format
  * lacks reads as 0, alpha as 1.
  */
@@ -80,9 +80,12 @@ nearest(const struct format *f, int c, double value, double *tolerance)
 		const double max = (1 << (f->bits[c] - (f->kind == SNORM))) - 1;
 		const double low = f->kind == SNORM ? -1 : 0;
 
-		/* Half a step, and 2^-22 for a product and two conversions
-		 * in single precision. */
-		*tolerance = 0.5 / max + ldexp(1, -22);
+		/* Half a step, but a whole one where components are packed:
+		 * GL prefers the nearest value but allows its neighbor, which
+		 * llvmpipe may store there.  It is the one that is stored
+		 * without the program, see kbuffer-conversion.c.  2^-22 is for
+		 * a product and two conversions in single precision. */
+		*tolerance = (f->bits[c] % 8 ? 1 : .5) / max + ldexp(1, -22);
 		return MAX2(low, MIN2(1, value));
 	}
 }

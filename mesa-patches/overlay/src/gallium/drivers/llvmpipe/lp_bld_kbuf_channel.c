@@ -108,9 +108,13 @@ encode_integer(const struct lp_kbuf_pixels *pixels,
 }
 
 
-/** Bits of a channel while blending, see lp_blend_type_from_format_desc(). */
+/**
+ * Bits of an unsigned channel that a color has on its way to the buffer without
+ * the k-buffer stage, see lp_blend_type_from_format_desc().
+ */
 static unsigned
-blend_bits(const struct util_format_description *desc)
+store_bits(const struct util_format_description *desc,
+           const struct util_format_channel_description *chan)
 {
    bool packed = false;
    unsigned most = 0;
@@ -120,7 +124,7 @@ blend_bits(const struct util_format_description *desc)
       packed |= desc->channel[i].size % 8 != 0;
       most = MAX2(most, desc->channel[i].size);
    }
-   return packed && most <= 16 ? (most <= 8 ? 8 : 16) : 0;
+   return packed && most <= 16 ? (most <= 8 ? 8 : 16) : chan->size;
 }
 
 
@@ -177,8 +181,7 @@ lp_build_kbuf_encode_channel(const struct lp_kbuf_pixels *pixels,
 
    switch (chan->type) {
    case UTIL_FORMAT_TYPE_UNSIGNED: {
-      const unsigned by = pixels->as_blending ? blend_bits(pixels->desc) : 0;
-      const unsigned bits = by ? by : chan->size;
+      const unsigned bits = store_bits(pixels->desc, chan);
 
       value = lp_build_clamp_zero_one_nanzero(&bld, value);
       if (bits > 16) {
@@ -194,8 +197,11 @@ lp_build_kbuf_encode_channel(const struct lp_kbuf_pixels *pixels,
    case UTIL_FORMAT_TYPE_SIGNED: {
       const uint32_t max = (1u << (chan->size - 1)) - 1;
 
-      value = lp_build_clamp(&bld, value,
-                             lp_build_const_vec(gallivm, type, -1.0), bld.one);
+      /* A NaN becomes -1. */
+      value = lp_build_max_ext(&bld, value,
+                               lp_build_const_vec(gallivm, type, -1.0),
+                               GALLIVM_NAN_RETURN_OTHER_SECOND_NONNAN);
+      value = lp_build_min(&bld, value, bld.one);
       value = lp_build_mul(&bld, value, lp_build_const_vec(gallivm, type, max));
       value = lp_build_iround(&bld, value);
       return LLVMBuildAnd(builder, value,

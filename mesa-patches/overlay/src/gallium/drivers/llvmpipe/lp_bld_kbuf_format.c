@@ -488,7 +488,15 @@ lp_build_kbuf_encode(const struct lp_kbuf_pixels *pixels, unsigned write_mask,
       return;
    }
    if (desc->colorspace == UTIL_FORMAT_COLORSPACE_SRGB) {
-      LLVMValueRef src[4] = { rgba[0], rgba[1], rgba[2], rgba[3] };
+      LLVMValueRef src[4] = { NULL, NULL, NULL, rgba[3] };
+      struct lp_build_context bld;
+
+      /* The conversion makes 1 of a NaN in these components. */
+      lp_build_context_init(&bld, gallivm, pixels->type);
+      for (unsigned c = 0; c < 3; c++) {
+         src[c] = lp_build_max_ext(&bld, rgba[c], bld.zero,
+                                   GALLIVM_NAN_RETURN_OTHER_SECOND_NONNAN);
+      }
       words[0] = lp_build_float_to_srgb_packed(gallivm, desc, pixels->type, src);
       return;
    }

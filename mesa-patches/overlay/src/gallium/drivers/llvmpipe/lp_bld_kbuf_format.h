@@ -33,9 +33,6 @@ struct lp_kbuf_pixels
    const struct util_format_description *desc;
    LLVMValueRef rows[2];       /**< byte pointers, [1] is NULL in 1D */
    LLVMValueRef words;         /**< or this, in the thread's copy of the tile */
-
-   /** Encode by way of 8 or 16 bits a channel, as blending does. */
-   bool as_blending;
 };
 
 /** Whether conversions need denormals, which are off in raster threads. */
@@ -50,7 +47,10 @@ void
 lp_kbuf_format_bits(const struct util_format_description *desc,
                     unsigned write_mask, uint32_t *bits);
 
-/** Those bits; others are anything.  Uses neither rows nor words of pixels. */
+/**
+ * Those bits, as a color is stored without blending; others are anything.
+ * Uses neither rows nor words of pixels.
+ */
 void
 lp_build_kbuf_encode(const struct lp_kbuf_pixels *pixels, unsigned write_mask,
                      const LLVMValueRef rgba[4], LLVMValueRef *words);

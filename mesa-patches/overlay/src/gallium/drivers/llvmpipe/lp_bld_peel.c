@@ -352,7 +352,6 @@ encode_fragment(struct peel_context *ctx, LLVMValueRef depth)
          .gallivm = ctx->gallivm,
          .type = params->type,
          .desc = util_format_description(key->cbuf_format[i]),
-         .as_blending = true,
       };
       lp_build_kbuf_encode(&pixels, 0xf, params->colors[i], &ctx->fragment[w]);
       w += lp_peel_color_words(key->cbuf_format[i]);
