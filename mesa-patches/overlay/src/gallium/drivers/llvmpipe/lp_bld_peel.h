@@ -29,8 +29,10 @@ lp_build_peel_depth(struct gallivm_state *gallivm,
  */
 
 /**
- * Take the lanes out of a mask that would not be inserted as the layers are
- * now.  Colors are not used.
+ * Before fragments are shaded: colors are not used.
+ *
+ * \return the lanes of which the fragment would be inserted as the layers are
+ *         now, or has to be counted as one at the bound
  */
 LLVMValueRef
 lp_build_peel_cull(struct gallivm_state *gallivm,

@@ -34,9 +34,75 @@ peel_depth(struct gallivm_state *gallivm,
 }
 
 
+/** Whether any lane of a mask is set. */
+static LLVMValueRef
+peel_any_lane(struct gallivm_state *gallivm, struct lp_type type,
+              LLVMValueRef mask)
+{
+   LLVMTypeRef bits_type = LLVMIntTypeInContext(gallivm->context,
+                                                type.length * type.width);
+
+   return LLVMBuildICmp(gallivm->builder, LLVMIntNE,
+                        LLVMBuildBitCast(gallivm->builder, mask, bits_type, ""),
+                        LLVMConstNull(bits_type), "");
+}
+
+
+/** Whether any fragment of a group, in any sample, would be inserted. */
+static LLVMValueRef
+peel_group_alive(struct gallivm_state *gallivm,
+                 const struct lp_fragment_shader_variant *variant,
+                 struct lp_build_interp_soa_context *interp,
+                 struct lp_type type, unsigned group, unsigned num_groups,
+                 LLVMTypeRef mask_type, LLVMValueRef mask_store)
+{
+   LLVMBuilderRef builder = gallivm->builder;
+   LLVMValueRef function =
+      LLVMGetBasicBlockParent(LLVMGetInsertBlock(builder));
+   const struct lp_fragment_shader_variant_key *key = &variant->key;
+   /* See generate_fragment(). */
+   LLVMValueRef context_ptr = LLVMGetParam(function, 0);
+   LLVMValueRef thread_data_ptr = LLVMGetParam(function, 11);
+   LLVMValueRef alive = LLVMConstNull(mask_type);
+
+   for (unsigned s = 0; s < key->coverage_samples; s++) {
+      LLVMValueRef index =
+         lp_build_const_int32(gallivm, s * num_groups + group);
+      struct lp_build_kbuf_params params = {
+         .key = key,
+         .type = type,
+         .thread_data_ptr = thread_data_ptr,
+         .group = lp_build_const_int32(gallivm, group),
+         .x = LLVMGetParam(function, 2),
+         .y = LLVMGetParam(function, 3),
+         .sample = lp_build_const_int32(gallivm, s),
+         .mask = lp_build_pointer_get2(builder, mask_type, mask_store, index),
+      };
+
+      lp_build_interp_soa_update_pos_dyn(interp, gallivm, params.group,
+                                         key->multisample ? params.sample : NULL);
+      params.pos[2] =
+         peel_depth(gallivm, key, type,
+                    variant->jit_context_type, context_ptr,
+                    variant->jit_thread_data_type, thread_data_ptr,
+                    interp->pos[2], &params.mask);
+      alive = LLVMBuildOr(builder, alive,
+                          lp_build_peel_cull(gallivm, &params), "");
+   }
+   return peel_any_lane(gallivm, type, alive);
+}
+
+
 /**
- * Before anything else, take fragments out of the masks that would not be
+ * Before anything else, refuse groups of fragments of which none would be
  * inserted; leave the function if that are all.
+ *
+ * A fragment's shader can see others of its group: by derivatives, votes and
+ * other operations among its lanes, and by the loops that it runs together
+ * with them; and it can see which samples of its pixel are covered.  So a
+ * group is refused as a whole, or else is shaded with the masks that it came
+ * with, and the stage refuses what remains.  That costs little, since all
+ * lanes of a group are shaded at once.
  *
  * \param mask_store  of sample, group
  */
@@ -48,52 +114,28 @@ generate_peel_cull(struct gallivm_state *gallivm,
                    LLVMTypeRef mask_type, LLVMValueRef mask_store)
 {
    LLVMBuilderRef builder = gallivm->builder;
-   LLVMValueRef function =
-      LLVMGetBasicBlockParent(LLVMGetInsertBlock(builder));
-   const struct lp_fragment_shader_variant_key *key = &variant->key;
-   /* See generate_fragment(). */
-   LLVMValueRef context_ptr = LLVMGetParam(function, 0);
-   LLVMValueRef thread_data_ptr = LLVMGetParam(function, 11);
-   LLVMValueRef any = LLVMConstNull(mask_type);
+   LLVMTypeRef bool_type = LLVMInt1TypeInContext(gallivm->context);
+   LLVMValueRef any_alive = LLVMConstNull(bool_type);
 
-   for (unsigned s = 0; s < key->coverage_samples; s++) {
-      for (unsigned i = 0; i < num_groups; i++) {
-         LLVMValueRef index = lp_build_const_int32(gallivm, s * num_groups + i);
-         LLVMValueRef mask = lp_build_pointer_get2(builder, mask_type,
-                                                   mask_store, index);
-         struct lp_build_kbuf_params params = {
-            .key = key,
-            .type = type,
-            .thread_data_ptr = thread_data_ptr,
-            .group = lp_build_const_int32(gallivm, i),
-            .x = LLVMGetParam(function, 2),
-            .y = LLVMGetParam(function, 3),
-            .sample = lp_build_const_int32(gallivm, s),
-            .mask = mask,
-         };
+   for (unsigned i = 0; i < num_groups; i++) {
+      LLVMValueRef alive =
+         peel_group_alive(gallivm, variant, interp, type, i, num_groups,
+                          mask_type, mask_store);
+      struct lp_build_if_state refused;
 
-         lp_build_interp_soa_update_pos_dyn(interp, gallivm, params.group,
-                                            key->multisample ? params.sample : NULL);
-         params.pos[2] =
-            peel_depth(gallivm, key, type,
-                       variant->jit_context_type, context_ptr,
-                       variant->jit_thread_data_type, thread_data_ptr,
-                       interp->pos[2], &params.mask);
-         mask = lp_build_peel_cull(gallivm, &params);
-         lp_build_pointer_set(builder, mask_store, index, mask);
-         any = LLVMBuildOr(builder, any, mask, "");
+      any_alive = LLVMBuildOr(builder, any_alive, alive, "");
+      lp_build_if(&refused, gallivm, LLVMBuildNot(builder, alive, ""));
+      for (unsigned s = 0; s < variant->key.coverage_samples; s++) {
+         lp_build_pointer_set(builder, mask_store,
+                              lp_build_const_int32(gallivm, s * num_groups + i),
+                              LLVMConstNull(mask_type));
       }
+      lp_build_endif(&refused);
    }
 
-   LLVMTypeRef bits_type = LLVMIntTypeInContext(gallivm->context,
-                                                type.length * type.width);
    LLVMBasicBlockRef leave = lp_build_insert_new_block(gallivm, "peel_leave");
    LLVMBasicBlockRef stay = lp_build_insert_new_block(gallivm, "peel_stay");
-   LLVMValueRef alive =
-      LLVMBuildICmp(builder, LLVMIntNE,
-                    LLVMBuildBitCast(builder, any, bits_type, ""),
-                    LLVMConstNull(bits_type), "");
-   LLVMBuildCondBr(builder, alive, stay, leave);
+   LLVMBuildCondBr(builder, any_alive, stay, leave);
    LLVMPositionBuilderAtEnd(builder, leave);
    LLVMBuildRetVoid(builder);
    LLVMPositionBuilderAtEnd(builder, stay);
