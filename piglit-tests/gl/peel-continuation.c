@@ -307,6 +307,35 @@ never_cleared(void *data)
 	return peel_end(&p, pass);
 }
 
+/**
+ * A bound counts fragments, and empty layers are none: those that come at just
+ * the depth that empty layers had, when another depth is empty, are new.
+ */
+static enum piglit_result
+at_former_empty_depth(void *data)
+{
+	struct peel p = peel_simple(*(const int *)data);
+	struct peel_quad quads[7];
+	bool pass = true;
+
+	/* Pixels on the right are full, so that not all are exhausted. */
+	glClearDepth(.5);
+	peel_clear(&p);
+	for (int i = 0; i < 7; i++)
+		quads[i] = (struct peel_quad) { 9, 0, 16, 16, .25, 1 + i };
+	peel_draw(&p, quads, 7);
+	pass = peel_check(&p);
+
+	peel_next(&p);
+	glClearDepth(1);
+	peel_clear(&p);
+	for (int i = 0; i < 7; i++)
+		quads[i] = peel_full(&p, .5, 10 + i);
+	peel_draw(&p, quads, 7);
+	pass = peel_check(&p) && pass;
+	return peel_end(&p, pass);
+}
+
 /** Two framebuffers, each with a bound of its own, in turn. */
 static enum piglit_result
 two_framebuffers(void *data)
@@ -369,6 +398,8 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("exhausted-short", exhausted, &short_of_full),
 	KB_SUBTEST("never-cleared", never_cleared, &depths),
 	KB_SUBTEST("never-cleared-coplanar", never_cleared, &one_depth),
+	KB_SUBTEST("at-former-empty-depth", at_former_empty_depth,
+		   &short_of_full),
 	KB_SUBTEST("two-framebuffers", two_framebuffers, NULL),
 	KB_SUBTEST_END
 };

@@ -219,6 +219,7 @@ void
 peel_next(struct peel *p)
 {
 	struct peel_model *m = &p->model;
+	const struct state s = get_state(p);
 	const int k = p->layers;
 
 	for (int i = 0; i < num_samples(p); i++) {
@@ -226,7 +227,8 @@ peel_next(struct peel *p)
 
 		if (m->rank == 0 || last != m->bound[i])
 			m->taken[i] = 0;
-		for (int l = 0; l < k; l++)
+		/* Empty layers hold no fragments. */
+		for (int l = 0; l < k && nearer(s.func, last, s.empty); l++)
 			m->taken[i] += m->depth[i * k + l] == last;
 		m->bound[i] = last;
 		m->seen[i] = 0;

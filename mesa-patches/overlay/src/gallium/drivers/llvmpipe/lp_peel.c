@@ -153,12 +153,17 @@ advance_sample(const struct depth_layers *layers, int32_t empty,
 {
    const int32_t depth =
       read_depth(layers, x, y, layers->num_layers - 1, sample);
+   bool more = depth < empty;
    uint32_t kept = 0;
 
-   for (unsigned layer = layers->num_layers; layer--;)
-      kept += read_depth(layers, x, y, layer, sample) == depth;
+   /* Layers are sorted: the first other depth ends it, mostly at once. */
+   if (more) {
+      for (unsigned layer = layers->num_layers; layer--; kept++) {
+         if (read_depth(layers, x, y, layer, sample) != depth)
+            break;
+      }
+   }
 
-   bool more = depth < empty;
    if (old && depth <= old->depth[i]) {
       const uint32_t arrived = old->seen[i] > old->kept[i] ?
                                old->seen[i] - old->kept[i] : 0;

@@ -96,10 +96,16 @@ advance_bound(struct sp_peel_bound *bound, bool first,
               double empty)
 {
    const double last = layer_depth(layers, layers->num - 1);
+   const bool full = sp_depth_is_nearer(func, last, empty);
    unsigned kept = 0;
 
-   for (unsigned i = 0; i < layers->num; i++)
-      kept += layer_depth(layers, i) == last;
+   /* Layers are sorted: the first other depth ends it, mostly at once. */
+   if (full) {
+      for (unsigned i = layers->num; i--; kept++) {
+         if (layer_depth(layers, i) != last)
+            break;
+      }
+   }
 
    /* Layers at the depth of the old bound are fragments that were let in
     * behind it, or, if nobody cleared the layers since, counted already.
@@ -115,8 +121,7 @@ advance_bound(struct sp_peel_bound *bound, bool first,
       kept = MIN2(kept, let_in);
    }
 
-   const bool more = sp_depth_is_nearer(func, last, empty) &&
-                     (further || (same && kept > 0));
+   const bool more = full && (further || (same && kept > 0));
 
    *bound = (struct sp_peel_bound) {
       .depth = last,
