@@ -238,10 +238,7 @@ st_peel_update(struct st_context *st)
    if (st->pipe->set_kbuffer_state(st->pipe, &state)) {
       st->peel = object;
    } else {
-      const struct pipe_kbuffer_state none = { 0 };
-
       /* This draw changes nothing, the next one tries again. */
-      st->pipe->set_kbuffer_state(st->pipe, &none);
       st->peel = NULL;
       ctx->NewDriverState |= ST_NEW_BLEND;
       _mesa_error(ctx, GL_OUT_OF_MEMORY, "glDraw*");

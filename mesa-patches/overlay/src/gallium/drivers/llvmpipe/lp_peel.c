@@ -359,14 +359,15 @@ init_layout(struct lp_rast_peel *peel, const struct pipe_framebuffer_state *fb)
 }
 
 
-/** Have the memory that the bound state needs; false if there is none. */
+/** Have the memory that draws need with a state; false if there is none. */
 static bool
-reserve_tiles(const struct llvmpipe_context *lp)
+reserve_tiles(const struct llvmpipe_context *lp,
+              const struct pipe_kbuffer_state *state)
 {
    struct llvmpipe_screen *screen = llvmpipe_screen(lp->pipe.screen);
    struct lp_rast_peel peel;
 
-   if (!lp->kbuf.peel.object || !has_depth(&lp->framebuffer))
+   if (!state || !state->peel.object || !has_depth(&lp->framebuffer))
       return true;
 
    init_layout(&peel, &lp->framebuffer);
@@ -377,12 +378,14 @@ reserve_tiles(const struct llvmpipe_context *lp)
 }
 
 
+/** A state without its tiles is not set: draws would rely on them. */
 static bool
 llvmpipe_set_peel_state(struct pipe_context *pipe,
                         const struct pipe_kbuffer_state *state)
 {
-   return llvmpipe_set_kbuffer_state(pipe, state) &&
-          reserve_tiles(llvmpipe_context(pipe));
+   const bool reserved = reserve_tiles(llvmpipe_context(pipe), state);
+
+   return llvmpipe_set_kbuffer_state(pipe, reserved ? state : NULL) && reserved;
 }
 
 

@@ -91,7 +91,8 @@ struct pipe_peel_state
 {
    /**
     * From pipe_context::create_peel_object; belongs to the context, and is
-    * not deleted while it is set.
+    * not deleted while it is set.  It is not set when there was no memory for
+    * the state.
     */
    void *object;
 
