@@ -15,20 +15,29 @@ import tempfile
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkObject, vtkPoints
+from vtkmodules.vtkCommonCore import (
+    vtkLogger,
+    vtkObject,
+    vtkOutputWindow,
+    vtkPoints,
+    vtkStringOutputWindow,
+)
 from vtkmodules.vtkCommonDataModel import (
+    VTK_POLYHEDRON,
     VTK_TETRA,
     vtkCellArray,
     vtkDataSet,
     vtkDataSetAttributes,
+    vtkGenericCell,
     vtkStructuredGrid,
     vtkUnstructuredGrid,
 )
 from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
 from vtkmodules.vtkFiltersGeneral import vtkDataSetTriangleFilter
-from vtkmodules.vtkIOLegacy import vtkDataSetReader, vtkUnstructuredGridWriter
+from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
 from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
 
+import legacy_vtk
 import plot3d
 
 # A hexahedron of a structured grid in five tetrahedra, for hexahedra with an even and an odd sum of
@@ -46,18 +55,40 @@ class BadGrid(Exception):
     """Why there is no grid, in one line."""
 
 
+def floats_lose(numbers):
+    """Whether rounding the numbers to floats as they are loses more than rounding what is left
+    without an offset (as to_floats of samples/lib has it)."""
+    numbers = numbers[np.isfinite(numbers)].astype(float)
+    if not len(numbers):
+        return False
+    loss = abs(numbers - numbers.astype(np.float32)).max()
+    return loss > (numbers.max() - numbers.min()) * 2.0**-24
+
+
+def narrowed(values):
+    """As floats if these are precise enough, else as doubles."""
+    columns = values.reshape(len(values), -1).T
+    return values.astype(float if any(map(floats_lose, columns)) else np.float32)
+
+
 class Grid:
     """Points, tetrahedra, and arrays with one value or vector a point."""
 
     def __init__(self, points, cells, arrays):
-        self.points = points.astype(np.float32)
+        self.points = points.astype(float)
         self.cells = cells.astype(np.int64)
         self.arrays = arrays
+        self.notes = []
+
+    def points_as_read(self):
+        """As the samples will have them: floats, of large coordinates without an offset."""
+        read = [axis - axis.min() if floats_lose(axis) else axis for axis in self.points.T]
+        return np.stack(read, axis=1).astype(np.float32)
 
     def volumes(self):
         """Those of the cells, negative if inverted; zero if within the rounding of the computation
         (as signed_volume of samples/lib has it)."""
-        origin, *others = self.points.astype(float)[self.cells].transpose(1, 0, 2)
+        origin, *others = self.points_as_read().astype(float)[self.cells].transpose(1, 0, 2)
         a, b, c = (other - origin for other in others)
         terms = [a[:, i] * b[:, j] * c[:, k] for i, j, k in itertools.permutations(range(3))]
         signs = [1, -1, -1, 1, 1, -1]
@@ -76,21 +107,32 @@ class Grid:
     def check(self):
         if not len(self.cells):
             raise BadGrid("it has no cells with a volume")
-        if not np.isfinite(self.points).all():
-            raise BadGrid(f"point {first(~np.isfinite(self.points).all(axis=1))} is not finite")
+        used = np.zeros(len(self.points), bool)
+        used[self.cells] = True
+        wrong = used & ~np.isfinite(self.points).all(axis=1)
+        if wrong.any():
+            raise BadGrid(f"point {first(wrong)} is not finite")
+        faults = {}
         for name, values in self.arrays.items():
-            finite = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
-            if not finite.all():
-                raise BadGrid(f"the value of '{name}' at point {first(~finite)} is not finite")
+            finite = np.isfinite(values.reshape(len(values), -1).astype(np.float32)).all(axis=1)
+            if (used & ~finite).any():
+                place = first(used & ~finite)
+                faults[name] = f"the value of '{name}' at point {place} is not finite"
+        if faults and len(faults) == len(self.arrays):
+            raise BadGrid(next(iter(faults.values())))
+        for name, fault in faults.items():
+            del self.arrays[name]
+            self.notes.append(f"'{name}' is left out, as {fault}")
 
     def collapse_edges(self):
         """Joins the ends of edges without length, as where a structured grid is folded to a line:
         what was on two sides of a flat cell are neighbors then. The values are averaged."""
         ends = np.concatenate([self.cells[:, [i, j]] for i in range(4) for j in range(i)])
-        same = (self.points[ends[:, 0]] == self.points[ends[:, 1]]).all(axis=1)
+        points = self.points_as_read()
+        same = (points[ends[:, 0]] == points[ends[:, 1]]).all(axis=1)
         joined = np.unique(ends[same])
         _, first_of, place = np.unique(
-            self.points[joined], axis=0, return_index=True, return_inverse=True
+            points[joined], axis=0, return_index=True, return_inverse=True
         )
         place = place.ravel()
         for values in self.arrays.values():
@@ -104,20 +146,26 @@ class Grid:
         return len(joined) - len(first_of)
 
     def orient(self):
-        """Turns inverted cells and leaves out those without volume."""
-        volumes = self.volumes()
-        turned = volumes < 0
-        self.cells[turned] = self.cells[turned][:, [0, 2, 1, 3]]
-        self.cells = self.cells[volumes != 0]
-        return turned.sum(), (volumes == 0).sum()
+        """Turns inverted cells, leaves out those without volume, and the points that no cell has.
+        What is left may be read with another offset, so that others are flat."""
+        all_turned = all_flat = 0
+        while True:
+            self.select_points(np.unique(self.cells))
+            volumes = self.volumes()
+            turned, flat = volumes < 0, volumes == 0
+            self.cells[turned] = self.cells[turned][:, [0, 2, 1, 3]]
+            self.cells = self.cells[~flat]
+            all_turned, all_flat = all_turned + turned.sum(), all_flat + flat.sum()
+            if not flat.any():
+                return all_turned, all_flat
 
 
 def first(condition):
     return int(np.argmax(condition))
 
 
-def as_floats(arrays):
-    return {name: values.astype(np.float32) for name, values in arrays.items()}
+def as_doubles(arrays):
+    return {name: values.astype(float) for name, values in arrays.items()}
 
 
 def point_arrays(data):
@@ -132,7 +180,7 @@ def point_arrays(data):
         average.Update()
         data = average.GetOutput()
     found = numeric(data.GetPointData())
-    return as_floats({a.GetName() or f"array{i}": vtk_to_numpy(a) for i, a in enumerate(found)})
+    return as_doubles({a.GetName() or f"array{i}": vtk_to_numpy(a) for i, a in enumerate(found)})
 
 
 def split_structured(points, shape, shown, arrays):
@@ -169,9 +217,61 @@ def split_structured_vtk(data):
     return split_structured(points, dimensions, shown, point_arrays(data))
 
 
+def check_cells(data):
+    """What VTK believes without looking: how many points a cell of each type has, and which."""
+    types = vtk_to_numpy(data.GetCellTypesArray())
+    offsets = vtk_to_numpy(data.GetCells().GetOffsetsArray())
+    points = vtk_to_numpy(data.GetCells().GetConnectivityArray())
+    sizes = np.diff(offsets)
+    if (sizes < 0).any() or offsets[0] != 0 or offsets[-1] != len(points):
+        raise BadGrid("the offsets of its cells do not ascend from 0 to the end of the list")
+    beyond = (points < 0) | (points >= data.GetNumberOfPoints())
+    if beyond.any():
+        place = first(beyond)
+        raise BadGrid(f"cell {np.searchsorted(offsets, place, 'right') - 1} has point"
+                      f" {points[place]}, but there are {data.GetNumberOfPoints()} points")
+    cell = vtkGenericCell()
+    for kind in np.unique(types):
+        cell.SetCellType(int(kind))
+        if cell.GetCellType() != kind:
+            raise BadGrid(f"cell {first(types == kind)} has the type {kind}, which VTK has not")
+        wanted = cell.GetNumberOfPoints()
+        wrong = (types == kind) & (sizes != wanted)
+        if wanted and wrong.any():
+            raise BadGrid(f"cell {first(wrong)} has {sizes[first(wrong)]} points, but its type"
+                          f" {kind} has {wanted}")
+
+
+def share_points(data):
+    """Lets cells share those points that are in one place and have the same values, as finite
+    element codes give each cell its own: only cells that share points are cut alike."""
+    types = vtk_to_numpy(data.GetCellTypesArray())
+    columns = [vtk_to_numpy(data.GetPoints().GetData())]
+    attributes = data.GetPointData()
+    columns += [vtk_to_numpy(attributes.GetArray(i)) for i in range(attributes.GetNumberOfArrays())
+                if attributes.GetArray(i) is not None]
+    rows = np.column_stack([column.astype(float) for column in columns]) + 0.0  # No zero is -0.
+    keys = np.ascontiguousarray(rows).view(np.dtype((np.void, rows.shape[1] * 8))).ravel()
+    _, first_of, place = np.unique(keys, return_index=True, return_inverse=True)
+    if len(first_of) == len(rows) or (types == VTK_POLYHEDRON).any():
+        return data
+    cells = vtkCellArray()
+    old = vtk_to_numpy(data.GetCells().GetConnectivityArray())
+    offsets = vtk_to_numpy(data.GetCells().GetOffsetsArray())
+    cells.SetData(numpy_to_vtkIdTypeArray(offsets.astype(np.int64), deep=True),
+                  numpy_to_vtkIdTypeArray(first_of[place.ravel()][old].astype(np.int64), deep=True))
+    shared = vtkUnstructuredGrid()
+    shared.ShallowCopy(data)
+    shared.SetCells(numpy_to_vtk(types, deep=True), cells)
+    return shared
+
+
 def split(data):
     if isinstance(data, vtkStructuredGrid) and data.GetPoints():
         return split_structured_vtk(data)
+    if isinstance(data, vtkUnstructuredGrid) and data.GetNumberOfCells():
+        check_cells(data)
+        data = share_points(data)
     triangulate = vtkDataSetTriangleFilter()
     triangulate.TetrahedraOnlyOn()
     arrays = point_arrays(data)
@@ -202,23 +302,42 @@ def read_plot3d(path, solution, block):
         if solutions is None:
             raise BadGrid(f"{solution} is no PLOT3D solution on its points, or it is cut off")
         arrays = solutions[block or 0]
-    return split_structured(points, shape, shown, as_floats(arrays))
+    return split_structured(points, shape, shown, as_doubles(arrays))
+
+
+@contextlib.contextmanager
+def errors_of_vtk():
+    """What VTK complains about is an error: it goes on with whatever it has."""
+    said, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
+    vtkOutputWindow.SetInstance(said)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    vtkObject.GlobalWarningDisplayOn()
+    try:
+        yield
+    finally:
+        vtkObject.GlobalWarningDisplayOff()
+        vtkOutputWindow.SetInstance(before)
+    if "ERROR" in said.GetOutput():
+        # "ERROR: In file, line 1 / vtkThing (0x1234): what is wrong / empty lines"
+        message = said.GetOutput().split("ERROR", 1)[1].split("): ", 1)[-1]
+        raise BadGrid("VTK says " + " ".join(message.split("\n\n")[0].split()))
 
 
 def read_vtk(path):
+    """A data set, and a note about the file or nothing."""
     with open(path, "rb") as file:
-        is_legacy = file.read(5) == b"# vtk"
-    reader = vtkDataSetReader() if is_legacy else vtkXMLGenericDataObjectReader()
+        is_legacy = b"# vtk" in file.read(8)
     if is_legacy:
-        reader.ReadAllScalarsOn()
-        reader.ReadAllVectorsOn()
-        reader.ReadAllFieldsOn()
-    reader.SetFileName(path)
-    reader.Update()
-    data = reader.GetOutput()
+        data, note = legacy_vtk.read(path)
+    else:
+        reader = vtkXMLGenericDataObjectReader()
+        reader.SetFileName(path)
+        with errors_of_vtk():
+            reader.Update()
+        data, note = reader.GetOutput(), ""
     if not isinstance(data, vtkDataSet) or not data.GetNumberOfPoints():
         raise BadGrid("VTK finds no grid in it")
-    return data
+    return data, note
 
 
 def read_by_meshio(path):
@@ -239,21 +358,21 @@ def read_by_meshio(path):
         except (Exception, SystemExit) as error:  # Its readers raise whatever meets them.
             reason = (said.getvalue().split() or str(error).split() or [type(error).__name__])
             raise BadGrid("meshio says " + " ".join(reason)) from error
-        return read_vtk(os.path.join(folder, "grid.vtu"))
+        return read_vtk(os.path.join(folder, "grid.vtu"))[0]
 
 
 def write(grid, path):
     """A whole file or none."""
     data = vtkUnstructuredGrid()
     points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(grid.points), deep=True))
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(narrowed(grid.points)), deep=True))
     data.SetPoints(points)
     cells = vtkCellArray()
     sized = np.column_stack([np.full(len(grid.cells), 4), grid.cells])
     cells.SetCells(len(grid.cells), numpy_to_vtkIdTypeArray(sized.ravel(), deep=True))
     data.SetCells(VTK_TETRA, cells)
     for name, values in grid.arrays.items():
-        array = numpy_to_vtk(np.ascontiguousarray(values, dtype=np.float32), deep=True)
+        array = numpy_to_vtk(np.ascontiguousarray(narrowed(values)), deep=True)
         array.SetName(name)
         data.GetPointData().AddArray(array)
     folder = os.path.dirname(os.path.abspath(path))
@@ -278,7 +397,9 @@ def convert(options):
     if options.solution or ending in PLOT3D_ENDINGS:
         grid = read_plot3d(options.input, options.solution, options.block)
     elif ending in VTK_ENDINGS:
-        grid = split(read_vtk(options.input))
+        data, note = read_vtk(options.input)
+        grid = split(data)
+        grid.notes += [note] if note else []
     else:
         grid = split(read_by_meshio(options.input))
     count = len(grid.cells)
@@ -289,12 +410,12 @@ def convert(options):
         grid.arrays = dict(zip("xyz", grid.points.T.copy()))
     joined = grid.collapse_edges()
     turned, left_out = grid.orient()
-    grid.select_points(np.unique(grid.cells))
     grid.check()
     write(grid, options.output)
     print(f"    {len(grid.points):,} points, {len(grid.cells):,} of {count:,} tetrahedra:"
           f" {left_out:,} without volume left out, {turned:,} turned,"
-          f" {joined:,} points joined; fields: {', '.join(grid.arrays)}{source}")
+          f" {joined:,} points joined; fields: {', '.join(grid.arrays)}{source}"
+          + "".join(f"; {note}" for note in grid.notes))
 
 
 def main():
@@ -311,7 +432,7 @@ def main():
             if not os.path.isfile(path):
                 raise BadGrid(f"there is no file {path}")
         convert(options)
-    except BadGrid as error:
+    except (BadGrid, legacy_vtk.BadFile) as error:
         print(f"scripts/convert-grid: cannot convert {options.input}: {error}", file=sys.stderr)
         return 2
     except OSError as error:

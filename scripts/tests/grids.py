@@ -84,6 +84,66 @@ def write_plot3d(name, blocks, order=">", marks=False, real="f4", blanks=None, t
             file.write((b"\n" if text else b"").join(records))
 
 
+def write_legacy(name, points, cells, kind, arrays, order=None):
+    """A legacy VTK file by hand, as what reads it has its own idea of what is wrong: arrays are
+    (declaration, words or numbers) or lines; binary if an order of bytes is given."""
+    def block(values, form):
+        if order is None:
+            return "\n".join(str(value) for value in values).encode() + b"\n"
+        return np.asarray(values).astype(order + form).tobytes() + b"\n"
+
+    sized = [number for cell in cells for number in (len(cell), *cell)]
+    parts = [
+        b"# vtk DataFile Version 3.0\na title\n" + (b"\nASCII" if order is None else b"BINARY"),
+        f"\nDATASET UNSTRUCTURED_GRID\nPOINTS {len(points)} double\n".encode(),
+        block(np.ravel(points), "f8"),
+        f"CELLS {len(cells)} {len(sized)}\n".encode(), block(sized, "i4"),
+        f"CELL_TYPES {len(cells)}\n".encode(), block([kind] * len(cells), "i4"),
+        f"POINT_DATA {len(points)}\n".encode(),
+    ]
+    for head, values in arrays:
+        parts += [head.encode() + b"\n", block(values, "f8")]
+    with open(name, "wb") as file:
+        file.write(b"".join(parts))
+
+
+def make_legacy():
+    points, cells = cube_points(), hexahedra()
+    head = "SCALARS f double 1\nLOOKUP_TABLE default"
+    values = [float(value) for value in field(points)]
+
+    def write(name, words):
+        write_legacy(name, points, cells, 12, [(head, words)])
+
+    write("legacy-cut.vtk", values[:100])
+    write("legacy-nan.vtk", values[:9] + ["nan"] + values[10:])
+    write("legacy-comma.vtk", values[:9] + ["1,5"] + values[10:])
+    write_legacy("legacy-wrong.vtk", points, np.where(cells == 3, 125, cells), 12, [(head, values)])
+    write_legacy("legacy-type.vtk", points, cells, 10, [(head, values)])
+    write_legacy("legacy-little.vtk", points, cells, 12, [(head, values)], order="<")
+    write_legacy("legacy-big.vtk", points, cells, 12, [(head, values)], order=">")
+    # Arrays that are no fields, and one that is no number at a point.
+    count = len(points)
+    write_legacy("legacy-arrays.vtk", points, cells, 12, [
+        (f"FIELD FieldData 3\nlabel 1 {count} string", ["", "a%20b", *["f"] * (count - 2)]),
+        (f"mask 1 {count} bit", [1] * count), (f"lost 1 {count} float", ["nan", *values[1:]]),
+        (head, values)])
+    # Each cell has its own points; one more point is nobody's, far away and without a number.
+    own = np.append(points[cells.ravel()], [[1e9, 0, np.nan]], axis=0)
+    write_legacy("legacy-own.vtk", own, np.arange(len(own) - 1).reshape(-1, 8), 12,
+                 [(head, [*field(own[:-1]), "nan"])])
+    # On a map, and with a field that floats are too coarse for.
+    write_legacy("legacy-far.vtk", points + FAR, cells, 12,
+                 [(head, values), ("SCALARS p double 1\nLOOKUP_TABLE default", pressure(points))])
+
+
+FAR = np.array([615850, 5846925, 758])
+
+
+def pressure(points):
+    return 101325 + 0.04 * points[:, 0]
+
+
 def folded_points(shape):
     """A cube whose cells next to the edge x = y = 0 are wedges: there, i = 0 is one line."""
     i, j, z = cube_points(shape).T
@@ -120,6 +180,15 @@ def make(folder):
     at_points = {"f": field(points)}
     meshio.Mesh(points, [("hexahedron", hexahedra())], at_points).write("hexahedra.vtu")
     meshio.Mesh(points, [("hexahedron", hexahedra())], at_points).write("hexahedra.vtk")
+    make_legacy()
+    meshio.vtu.write("text.vtu", meshio.Mesh(points, [("hexahedron", hexahedra())], at_points),
+                     binary=False)
+    with open("text.vtu", encoding="ascii") as file:
+        text = file.read()
+    with open("beyond.vtu", "w", encoding="ascii") as file:
+        file.write(text.replace("\n0\n1\n6\n", "\n0\n999999\n6\n"))
+    with open("cut.vtu", "w", encoding="ascii") as file:
+        file.write(text[:len(text) // 2])
     triangles = tetrahedra()[:3, :3]
     meshio.Mesh(points, [("triangle", triangles), ("tetra", tetrahedra())], at_points).write(
         "gmsh.msh", file_format="gmsh22"
@@ -146,6 +215,8 @@ def measure(path):
     reader.Update()
     grid = reader.GetOutput()
     points = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
+    if points.min(axis=0)[0] > 1000:
+        points -= FAR
     assert set(vtk_to_numpy(grid.GetCellTypesArray())) == {VTK_TETRA}
     cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
     a, b, c, d = points[cells].transpose(1, 0, 2)
@@ -161,6 +232,8 @@ def measure(path):
     for name in ("f", "Density"):
         if name in names:
             error = np.abs(vtk_to_numpy(arrays.GetArray(name)) - field(points)).max()
+    if "p" in names:
+        error = max(error, np.abs(vtk_to_numpy(arrays.GetArray("p")) - pressure(points)).max())
     print(f"{os.path.basename(path)}: {len(cells)} tetrahedra, volume {volumes.sum():.6f},"
           f" {'all' if volumes.min() > 0 else 'not all'} positive, {unshared} faces unshared,"
           f" field {'right' if error < 1e-6 else 'wrong'}: {' '.join(names)}")

@@ -91,9 +91,36 @@ END
     [[ $measured == *"240 tetrahedra, volume 0.750000, all positive, "*", field right: "* ]]
 }
 
+# What users' files have besides a grid does not keep it from being converted.
+test_convert_grid_takes_files_as_users_have_them() {
+    make_grids
+    local form tetrahedra
+    convert big "$PWD/legacy-big.vtk"
+    [[ $output =~ \ ([0-9]+)\ of ]]
+    tetrahedra=${BASH_REMATCH[1]}
+    convert arrays "$PWD/legacy-arrays.vtk"
+    prints "'lost' is left out, as the value of 'lost' at point 0 is not finite"
+    convert little "$PWD/legacy-little.vtk"
+    prints "its binary numbers are little-endian, against the format"
+    convert far "$PWD/legacy-far.vtk"
+    convert own "$PWD/legacy-own.vtk"
+    prints "125 points"
+    diff <(for form in "arrays mask f" "big f" "far f p" "little f" "own f"; do
+        echo "${form%% *}.vtk: $tetrahedra tetrahedra, volume 1.000000, all positive," \
+            "0 faces unshared, field right: ${form#* }"
+    done) <(/usr/bin/python3 "$grids" measure "$work"/made/*.vtk) || exit
+}
+
 test_grids_that_cannot_be_converted() {
     make_grids
     local ending
+    not_converted "it ends early" "$PWD/legacy-cut.vtk"
+    not_converted "the value of 'f' at point 9 is not finite" "$PWD/legacy-nan.vtk"
+    not_converted "'1,5' is no number of its type: numbers have a point" "$PWD/legacy-comma.vtk"
+    not_converted "has point 125, but there are 125 points" "$PWD/legacy-wrong.vtk"
+    not_converted "cell 0 has 8 points, but its type 10 has 4" "$PWD/legacy-type.vtk"
+    not_converted "cell 0 has point 999999, but there are 125 points" "$PWD/beyond.vtu"
+    not_converted "VTK says Error parsing XML" "$PWD/cut.vtu"
     not_converted "it has 2 blocks: choose one by --block" "$PWD/blocks.xyz" "$PWD/blocks.q"
     not_converted "it has no block 2" --block 2 "$PWD/blocks.xyz" "$PWD/blocks.q"
     not_converted "there is no file" "$PWD/absent.vtu"
