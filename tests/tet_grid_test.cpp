@@ -96,6 +96,40 @@ TEST(TetGrid, CheckNamesTheFirstFault)
     EXPECT_EQ(message(grid), "it has no cells");
 }
 
+TEST(TetGrid, PointsOfOnePlaceAndValueAreJoined)
+{
+    // Each cell has points of its own. At one point the second cell has another value of pressure,
+    // and zero of the other sign.
+    const kb::TetGrid whole = two_cells();
+    kb::TetGrid grid;
+    for (const kb::ScalarField &field : whole.fields)
+        grid.fields.push_back({.name = field.name, .values = {}});
+    for (const glm::uvec4 &cell : whole.cells) {
+        const auto first = static_cast<std::uint32_t>(grid.points.size());
+        grid.cells.emplace_back(first, first + 1, first + 2, first + 3);
+        for (int corner = 0; corner < 4; ++corner) {
+            grid.points.push_back(whole.points[cell[corner]]);
+            for (std::size_t i = 0; i < grid.fields.size(); ++i)
+                grid.fields[i].values.push_back(whole.fields[i].values[cell[corner]]);
+        }
+    }
+    grid.points[4] = -grid.points[4];
+    ASSERT_EQ(grid.points[4], grid.points[0]);
+    grid.fields[1].values[4] += 1.0F;
+
+    kb::TetGrid by_temperature = grid;
+    EXPECT_EQ(kb::join_points(by_temperature, by_temperature.fields[0]), 3U);
+    EXPECT_EQ(by_temperature.points, whole.points);
+    EXPECT_EQ(by_temperature.cells, whole.cells);
+    EXPECT_EQ(by_temperature.fields[0].values, whole.fields[0].values);
+    kb::TetGrid by_pressure = grid;
+    EXPECT_EQ(kb::join_points(by_pressure, by_pressure.fields[1]), 2U);
+    EXPECT_EQ(by_pressure.points.size(), 6U);
+    kb::TetGrid joined = whole;
+    EXPECT_EQ(kb::join_points(joined, joined.fields[0]), 0U);
+    EXPECT_EQ(joined.points, whole.points);
+}
+
 TEST(TetGrid, FitsIntoTheUnitSphere)
 {
     kb::TetGrid grid = two_cells();

@@ -65,6 +65,36 @@ TEST(TransferFunction, ValuesAreTheFieldsUnlessNormalized)
     EXPECT_EQ(normalized->points().front().value, 0.25F);
 }
 
+TEST(TransferFunction, ValuesAreTheFieldsWithItsOffset)
+{
+    // In floats of 101325.01 to 101325.03 nothing would be left of them.
+    const kb::ScalarRange range{0.0F, 0.04F, 101325.0};
+    const auto function = parse_transfer_function("101325.01 0 0 0 5\n101325.03 1 1 1 5\n", range);
+    ASSERT_TRUE(function) << function.error().message;
+    EXPECT_NEAR(function->points()[0].value, 0.25, 1e-6);
+    EXPECT_NEAR(function->points()[1].value, 0.75, 1e-6);
+    const auto wrong = parse_transfer_function("101325.03 0 0 0 5\n101325.01 1 1 1 5\n", range);
+    EXPECT_EQ(wrong.error().message, "transfer function, point 2: values must ascend, 101325.01 "
+                                     "follows 101325.03");
+}
+
+TEST(ScalarRange, IsDescribedInTheFieldsUnits)
+{
+    const auto describe = [](std::vector<float> values, double offset) {
+        return kb::describe_field({.name = "p", .values = std::move(values), .offset = offset});
+    };
+    EXPECT_EQ(describe({0.0F, 0.04F, 0.01F}, 101325.0), "field 'p' from 101325 to 101325.04");
+    EXPECT_EQ(describe({-1.0F, 0.1F}, 0.0), "field 'p' from -1 to 0.1");
+    EXPECT_EQ(describe({0.0F, 0.0F}, 273.15), "field 'p' is 273.15 everywhere");
+    const kb::ScalarRange flat = kb::range_of(std::vector<float>{1e9F, 1e9F});
+    EXPECT_FALSE(flat.varies);
+    EXPECT_GT(flat.high, flat.low) << "there is nothing to divide by else";
+    EXPECT_EQ(kb::list_fields(std::vector<kb::ScalarField>{
+                  {.name = "v", .values = {1.0F, 2.0F}, .offset = 0.0, .components = 3},
+                  {.name = "T", .values = {}, .offset = 0.0, .components = 1, .fault = "no"}}),
+              "v: magnitude of 3 components, from 1 to 2\nT: cannot be drawn: no\n");
+}
+
 TEST(TransferFunction, CommentsAndBlankLinesAreNothing)
 {
     const auto function = parse_transfer_function("# a comment\n\n 0 0 0 0 1 # one\r\n\t\n", unit);

@@ -19,7 +19,7 @@ Result<IsoRequest> parse_iso_value(const std::string &text)
     const std::string number = text.substr(0, equals);
     IsoRequest request;
     char *end = nullptr;
-    request.value = std::strtof(number.c_str(), &end);
+    request.value = std::strtod(number.c_str(), &end);
     if (number.empty() || *end != '\0' || !std::isfinite(request.value))
         return Error{fmt::format("{} is not a finite number", number.empty() ? text : number)};
     if (equals == std::string::npos)
@@ -36,17 +36,19 @@ Result<IsoRequest> parse_iso_value(const std::string &text)
     return request;
 }
 
-float normalized(float value, ScalarRange range)
+float normalized(float scalar, const ScalarRange &range)
 {
-    return (value - range.low) / (range.high - range.low);
+    return (scalar - range.low) / (range.high - range.low);
 }
 
-std::vector<IsoValue> normalized(std::span<const IsoValue> values, ScalarRange range)
+std::vector<IsoValue> normalized(std::span<const IsoValue> values, const ScalarRange &range)
 {
     std::vector<IsoValue> inside;
     for (const IsoValue &iso : values) {
-        if (iso.value >= range.low && iso.value <= range.high)
-            inside.push_back({iso.value, iso.color, normalized(iso.value, range)});
+        // As the scalars are.
+        const auto scalar = static_cast<float>(iso.value - range.offset);
+        if (scalar >= range.low && scalar <= range.high)
+            inside.push_back({iso.value, iso.color, normalized(scalar, range)});
     }
     return inside;
 }

@@ -20,7 +20,7 @@ namespace kb
 {
 
 struct IsoValue {
-    float value = 0.0F; ///< In the units of the field.
+    double value = 0.0; ///< In the units of the field.
     glm::vec3 color{0.0F};
     float scalar = 0.0F; ///< The value as the scalars of fragments are: see normalized.
 };
@@ -28,17 +28,17 @@ struct IsoValue {
 /// "0.25", "0.25,0.5" or "0.25=ff8000": values, each with a color or without. A value without one
 /// gets a color of palette_color.
 struct IsoRequest {
-    float value = 0.0F;
+    double value = 0.0;
     bool has_color = false;
     glm::vec3 color{0.0F};
 };
 Result<IsoRequest> parse_iso_value(const std::string &text);
 
-/// From 0 to 1 over the range: (value - low) / (high - low).
-float normalized(float value, ScalarRange range);
+/// Of a scalar: from 0 to 1 over the range, (scalar - low) / (high - low).
+float normalized(float scalar, const ScalarRange &range);
 
 /// The iso-values with their scalars. Those out of the range have no surface and are left out.
-std::vector<IsoValue> normalized(std::span<const IsoValue> values, ScalarRange range);
+std::vector<IsoValue> normalized(std::span<const IsoValue> values, const ScalarRange &range);
 
 /// From blue for 0 over green to red for 1: clear colors of about the same lightness.
 glm::vec3 palette_color(float position);

@@ -9,6 +9,7 @@
 #include "context.hpp"
 #include "isosurface_disorder.hpp"
 #include "isosurface_renderer.hpp"
+#include "isosurface_report.hpp"
 #include "options.hpp"
 #include "particles.hpp"
 #include "source.hpp"
@@ -70,7 +71,7 @@ kb::ImageRgbaF surfaces_image(const kb::IsosurfaceRenderer &renderer,
         const auto iso =
             std::find_if(values.begin(), values.end(),
                          [scalar = pixel.y](const kb::IsoValue &v) { return v.scalar == scalar; });
-        pixel.y = iso->value;
+        pixel.y = static_cast<float>(iso->value);
     }
     return image;
 }
@@ -120,19 +121,27 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
             return bad_input(written.error());
     }
 
-    if (options.repair)
-        fmt::print("{}\n", describe(source.repairs));
-    const kb::Spread spread = kb::spread_of(times);
-    fmt::print("isosurface k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), 1 geometry "
-               "pass, {} {}, {} iso-value{}, {} bytes per pixel\n",
-               options.k, options.size.width, options.size.height, spread.median, spread.p5,
-               spread.p95, times.size(), (*stream)->count(), (*stream)->primitive(), chosen.size(),
-               chosen.size() == 1 ? "" : "s", renderer->bytes_per_pixel());
+    kb::IsosurfaceReport report{
+        .iso_values = chosen,
+        .primitive = std::string((*stream)->primitive()),
+        .primitives = (*stream)->count(),
+        .bytes_per_pixel = renderer->bytes_per_pixel(),
+        .covered = kb::count_surfaces(renderer->read_surfaces()),
+        .times = times,
+        .disorder = {},
+    };
+    kb::print_report(options, source, report);
     if (options.measure_disorder) {
-        const auto disorder =
+        auto disorder =
             kb::measure_disorder(gl, settings, **stream, options.camera, values, picture);
         fmt::print("{}\n", disorder ? describe(*disorder, options.k)
                                     : "disorder: not measured: " + disorder.error().message);
+        if (disorder)
+            report.disorder = std::move(*disorder);
+    }
+    if (!options.json.empty()) {
+        if (auto written = kb::write_report(options.json, options, source, report); !written)
+            return bad_input(written.error());
     }
 
     while ((*context)->present(renderer->framebuffer(), options.size, options.camera))
@@ -155,9 +164,16 @@ int main(int argc, char **argv)
         return *status;
     for (const auto &checked :
          {kb::check_options(options), kb::check_writable(options.outputs),
-          kb::check_writable({.picture = options.surfaces, .floats = {}, .layers = {}})}) {
+          kb::check_writable(options.surfaces), kb::check_writable(options.json)}) {
         if (!checked)
             return kb::fail(app, checked.error(), kb::exit_bad_input);
+    }
+    if (options.list_fields) {
+        const auto fields = kb::list_fields(options);
+        if (!fields)
+            return kb::fail(app, fields.error(), kb::exit_bad_input);
+        fmt::print("{}", *fields);
+        return 0;
     }
     const auto source = kb::make_source(options);
     if (!source)

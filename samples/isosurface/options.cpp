@@ -39,6 +39,8 @@ static void declare_source(CLI::App &app, IsosurfaceOptions &options)
         ->capture_default_str();
     app.add_option("--field", options.field, "Scalar field, by name; without, the first")
         ->type_name("NAME");
+    app.add_flag("--list-fields", options.list_fields,
+                 "Print the fields with their ranges, and draw nothing");
 }
 
 static void declare_surfaces(CLI::App &app, IsosurfaceOptions &options)
@@ -93,6 +95,8 @@ void declare_options(CLI::App &app, IsosurfaceOptions &options)
                    "Write distance from the eye and iso-value of each pixel's surface as red and "
                    "green; no surface is 0, 0")
         ->type_name("FILE.pfm");
+    app.add_option("--json", options.json, "Write what was drawn and the times of each frame")
+        ->type_name("FILE.json");
 }
 
 Status check_options(const IsosurfaceOptions &options)
@@ -104,19 +108,21 @@ Status check_options(const IsosurfaceOptions &options)
     return ok;
 }
 
-std::vector<IsoValue> choose_iso_values(const IsosurfaceOptions &options, ScalarRange range)
+std::vector<IsoValue> choose_iso_values(const IsosurfaceOptions &options, const ScalarRange &range)
 {
-    const float extent = range.high - range.low;
-    const auto color_at = [&](float value) { return palette_color((value - range.low) / extent); };
+    const double low = range.in_units(range.low);
+    const double extent = double(range.high) - double(range.low);
+    const auto color_at = [=](double value) {
+        return palette_color(static_cast<float>((value - low) / extent));
+    };
     std::vector<IsoValue> values;
     for (const IsoRequest &request : options.iso_values)
         values.push_back(
             {request.value, request.has_color ? request.color : color_at(request.value)});
-    if (!values.empty())
+    if (!values.empty() || !range.varies)
         return values;
     for (int i = 1; i <= options.levels; ++i) {
-        const float position = static_cast<float>(i) / static_cast<float>(options.levels + 1);
-        const float value = range.low + position * extent;
+        const double value = low + extent * i / (options.levels + 1);
         values.push_back({value, color_at(value)});
     }
     return values;

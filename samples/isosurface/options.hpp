@@ -22,7 +22,8 @@ struct IsosurfaceOptions {
     bool has_particles = false; ///< Particles, not a grid.
     std::string particles;      ///< A file; empty: particles are generated.
     int particle_count = 200'000;
-    std::string field; ///< Empty: the first.
+    std::string field;        ///< Empty: the first.
+    bool list_fields = false; ///< That, and nothing else.
     std::vector<IsoRequest> iso_values;
     int levels = 3; ///< So many iso-values if none was given.
     int k = 6;
@@ -39,6 +40,7 @@ struct IsosurfaceOptions {
     std::string context = "osmesa";
     OutputPaths outputs;            ///< Only the pictures.
     std::filesystem::path surfaces; ///< PFM of distance and iso-value.
+    std::filesystem::path json;
 };
 
 void declare_options(CLI::App &app, IsosurfaceOptions &options);
@@ -46,7 +48,8 @@ void declare_options(CLI::App &app, IsosurfaceOptions &options);
 /// What no single option can know.
 Status check_options(const IsosurfaceOptions &options);
 
-/// The iso-values for a field of that range, in its units.
-std::vector<IsoValue> choose_iso_values(const IsosurfaceOptions &options, ScalarRange range);
+/// The iso-values for a field of that range, in its units; none if none was asked for and the field
+/// does not vary.
+std::vector<IsoValue> choose_iso_values(const IsosurfaceOptions &options, const ScalarRange &range);
 
 } // namespace kb

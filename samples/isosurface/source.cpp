@@ -17,6 +17,13 @@ static Result<TetGrid> make_grid(const IsosurfaceOptions &options, GridRepairs &
                           : load_tet_grid(options.grid);
 }
 
+static void take_field(Source &source, const ScalarField &field)
+{
+    source.field = field.name;
+    source.field_description = describe_field(field);
+    source.range = range_of(field);
+}
+
 static Result<Source> make_grid_source(const IsosurfaceOptions &options)
 {
     Source source;
@@ -26,19 +33,26 @@ static Result<Source> make_grid_source(const IsosurfaceOptions &options)
     const auto field = find_field(grid->fields, options.field);
     if (!field)
         return field.error();
+    source.unused_points = grid->unused_points;
+    source.joined_points = options.grid.empty() ? 0 : join_points(*grid, **field);
     fit_to_unit_sphere(grid->points);
-    source.range = range_of((*field)->values);
+    take_field(source, **field);
     source.order = options.order;
     source.faces = make_face_mesh(*grid, **field);
     source.cells = std::move(grid->cells);
     return source;
 }
 
+static Result<PointSet> make_point_set(const IsosurfaceOptions &options)
+{
+    return options.particles.empty()
+               ? make_particles(static_cast<std::size_t>(options.particle_count))
+               : load_point_set(options.particles);
+}
+
 static Result<Source> make_particle_source(const IsosurfaceOptions &options)
 {
-    auto set = options.particles.empty()
-                   ? make_particles(static_cast<std::size_t>(options.particle_count))
-                   : load_point_set(options.particles);
+    auto set = make_point_set(options);
     if (!set)
         return set.error();
     const auto field = find_field(set->fields, options.field);
@@ -47,7 +61,7 @@ static Result<Source> make_particle_source(const IsosurfaceOptions &options)
     fit_to_unit_sphere(set->points);
     Source source;
     source.medium = Medium::particles;
-    source.range = range_of((*field)->values);
+    take_field(source, **field);
     source.points = std::move(set->points);
     source.scalars = (*field)->values;
     return source;
@@ -56,6 +70,17 @@ static Result<Source> make_particle_source(const IsosurfaceOptions &options)
 Result<Source> make_source(const IsosurfaceOptions &options)
 {
     return options.has_particles ? make_particle_source(options) : make_grid_source(options);
+}
+
+Result<std::string> list_fields(const IsosurfaceOptions &options)
+{
+    if (options.has_particles) {
+        const auto set = make_point_set(options);
+        return set ? Result<std::string>(list_fields(set->fields)) : set.error();
+    }
+    GridRepairs repairs;
+    const auto grid = make_grid(options, repairs);
+    return grid ? Result<std::string>(list_fields(grid->fields)) : grid.error();
 }
 
 Result<std::unique_ptr<FragmentStream>>

@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace kb
@@ -20,16 +21,23 @@ namespace kb
 struct Source {
     Medium medium = Medium::grid;
     GridRepairs repairs;
+    std::size_t unused_points = 0; ///< Of the grid's file; left out.
+    std::size_t joined_points = 0; ///< See join_points.
     FaceMesh faces;
     std::vector<glm::uvec4> cells; ///< Of the grid.
     std::vector<glm::vec3> points;
     std::vector<float> scalars; ///< Of the points.
+    std::string field;
+    std::string field_description;
     ScalarRange range;
     FaceOrder order = FaceOrder::centroid;
 };
 
 /// Loads or generates it.
 Result<Source> make_source(const IsosurfaceOptions &options);
+
+/// Its fields for people, see list_fields.
+Result<std::string> list_fields(const IsosurfaceOptions &options);
 
 /// For iso-values with their scalars. Of a grid the faces that are next to a surface.
 Result<std::unique_ptr<FragmentStream>>

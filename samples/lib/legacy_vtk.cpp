@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace kb
@@ -38,7 +39,12 @@ namespace
 class VtkReader
 {
 public:
-    explicit VtkReader(std::string_view text) : text_(text) {}
+    explicit VtkReader(std::string_view text, bool is_little_endian = false) : text_(text)
+    {
+        text_.is_little_endian = is_little_endian;
+    }
+
+    bool is_binary() const { return text_.is_binary; }
 
     Result<LegacyVtk> read()
     {
@@ -60,7 +66,7 @@ private:
                               "formats)");
         is_version_5_ = first_word(identifier.substr(start.size())).starts_with('5');
         text_.line(); // The title.
-        const std::string_view form = first_word(text_.line());
+        const std::string_view form = text_.word();
         text_.is_binary = is_keyword(form, "BINARY");
         if (!text_.is_binary && !is_keyword(form, "ASCII"))
             return text_.fail(fmt::format("it is {}, not ASCII or BINARY", quoted(form)));
@@ -109,7 +115,7 @@ private:
     void read_points()
     {
         const std::size_t points = text_.count("points");
-        const auto coordinates = text_.floats(text_.word(), points, 3);
+        const auto coordinates = text_.reals(text_.word(), points, 3);
         vtk_.points.resize(coordinates.size() / 3);
         for (std::size_t i = 0; i < vtk_.points.size(); ++i)
             vtk_.points[i] = {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]};
@@ -178,9 +184,17 @@ private:
             }
             const std::size_t components = text_.count("components");
             const std::size_t items = text_.count("values");
-            const std::string_view type = text_.word();
-            keep(name, components, text_.floats(type, items, components));
+            read_array(name, text_.word(), items, components);
         }
+    }
+
+    void read_array(std::string_view name, std::string_view type, std::size_t items,
+                    std::size_t components)
+    {
+        if (VtkText::is_text(type))
+            text_.skip_texts(type, items, components);
+        else
+            keep(name, components, text_.reals(type, items, components));
     }
 
     /// One array with a value for each point or cell.
@@ -192,19 +206,19 @@ private:
         if (is("SCALARS"))
             read_scalars(name);
         else if (is("VECTORS") || is("NORMALS"))
-            keep(name, 3, text_.floats(text_.word(), items_, 3));
+            read_array(name, text_.word(), items_, 3);
         else if (is("TENSORS"))
-            text_.floats(text_.word(), items_, 9);
+            skip_array(text_.word(), 9);
         else if (is("TENSORS6"))
-            text_.floats(text_.word(), items_, 6);
+            skip_array(text_.word(), 6);
         else if (is("GLOBAL_IDS") || is("PEDIGREE_IDS"))
-            text_.floats(text_.word(), items_);
+            skip_array(text_.word(), 1);
         else if (is("TEXTURE_COORDINATES"))
             skip_with_components("texture coordinates", {});
         else if (is("COLOR_SCALARS"))
             skip_with_components("components", bytes);
         else if (is("LOOKUP_TABLE"))
-            text_.floats(bytes, text_.count("colors"), 4);
+            text_.reals(bytes, text_.count("colors"), 4);
         else
             text_.fail(fmt::format("{} stands where a section should begin", quoted(keyword)));
     }
@@ -212,7 +226,15 @@ private:
     void skip_with_components(const char *what, std::string_view type)
     {
         const std::size_t components = text_.count(what);
-        text_.floats(type.empty() ? text_.word() : type, items_, components);
+        skip_array(type.empty() ? text_.word() : type, components);
+    }
+
+    void skip_array(std::string_view type, std::size_t components)
+    {
+        if (VtkText::is_text(type))
+            text_.skip_texts(type, items_, components);
+        else
+            text_.reals(type, items_, components);
     }
 
     void read_scalars(std::string_view name)
@@ -226,22 +248,25 @@ private:
             text_.word();
             text_.word();
         }
-        keep(name, components, text_.floats(type, items_, components));
+        read_array(name, type, items_, components);
     }
 
     /// Keeps an array if it is one of the points.
-    void keep(std::string_view name, std::size_t components, const std::vector<float> &values)
+    void keep(std::string_view name, std::size_t components, std::vector<double> values)
     {
         if (!in_point_data_ || components == 0)
             return;
-        ScalarField field{decode_name(name), std::vector<float>(values.size() / components)};
-        for (std::size_t i = 0; i < field.values.size(); ++i) {
-            double squares = 0.0;
-            for (std::size_t c = 0; c < components; ++c)
-                squares += std::pow(double{values[i * components + c]}, 2.0);
-            field.values[i] = components == 1 ? values[i] : static_cast<float>(std::sqrt(squares));
+        if (components > 1) {
+            const std::size_t items = values.size() / components;
+            for (std::size_t i = 0; i < items; ++i) {
+                double squares = 0.0;
+                for (std::size_t c = 0; c < components; ++c)
+                    squares += std::pow(values[i * components + c], 2.0);
+                values[i] = std::sqrt(squares);
+            }
+            values.resize(items);
         }
-        vtk_.point_fields.push_back(std::move(field));
+        vtk_.point_arrays.push_back({decode_name(name), components, std::move(values)});
     }
 
     VtkText text_;
@@ -253,9 +278,31 @@ private:
 
 } // namespace
 
+/// Numbers that nobody measures: almost none are in a grid, but one in five of those that are read
+/// in the wrong byte order.
+static std::ptrdiff_t count_absurd(std::span<const glm::dvec3> points)
+{
+    const auto is_absurd = [](double x) {
+        return x != 0.0 && !(std::abs(x) > 1e-30 && std::abs(x) < 1e30);
+    };
+    return std::ranges::count_if(points, [&](const glm::dvec3 &p) {
+        return is_absurd(p.x) || is_absurd(p.y) || is_absurd(p.z);
+    });
+}
+
 Result<LegacyVtk> parse_legacy_vtk(std::string_view text)
 {
-    return VtkReader(text).read();
+    if (text.starts_with("\xEF\xBB\xBF")) // What some editors put in front of UTF-8.
+        text.remove_prefix(3);
+    VtkReader reader(text);
+    auto vtk = reader.read();
+    if (!reader.is_binary() || (vtk && count_absurd(vtk->points) == 0))
+        return vtk;
+    const auto other = VtkReader(text, true).read();
+    if (other && (!vtk || count_absurd(other->points) < count_absurd(vtk->points)))
+        return Error{"its binary numbers are little-endian, which the format forbids "
+                     "(scripts/convert-grid reads them)"};
+    return vtk;
 }
 
 } // namespace kb

@@ -7,6 +7,7 @@
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -43,6 +44,8 @@ static Status check_points(const std::vector<glm::vec3> &points,
     if (fields.empty())
         return Error{"it has no scalars at its points"};
     for (const ScalarField &field : fields) {
+        if (!field.fault.empty())
+            continue;
         if (field.values.size() != points.size())
             return Error{fmt::format("the field '{}' has {} values, but there are {} points",
                                      field.name, field.values.size(), points.size())};
@@ -98,6 +101,16 @@ std::string describe(const GridRepairs &repairs)
                        repairs.turned);
 }
 
+std::string describe_left_out(std::size_t unused_points, std::size_t joined_points)
+{
+    std::string text;
+    if (unused_points > 0)
+        text += fmt::format(", {} points that no cell has left out", unused_points);
+    if (joined_points > 0)
+        text += fmt::format(", {} points joined with others in their places", joined_points);
+    return text;
+}
+
 GridRepairs repair_tet_grid(TetGrid &grid)
 {
     GridRepairs repairs;
@@ -117,15 +130,73 @@ Result<const ScalarField *> find_field(const std::vector<ScalarField> &fields,
 {
     if (fields.empty())
         return Error{"there are no scalar fields"};
-    if (name.empty())
-        return &fields.front();
-    const auto found = std::ranges::find(fields, name, &ScalarField::name);
-    if (found != fields.end())
+    const auto found =
+        name.empty() ? fields.begin() : std::ranges::find(fields, name, &ScalarField::name);
+    if (found != fields.end() && found->fault.empty())
         return &*found;
     std::string names;
-    for (const ScalarField &field : fields)
-        names += (names.empty() ? "" : ", ") + field.name;
-    return Error{fmt::format("there is no scalar field '{}', but {}", name, names)};
+    for (const ScalarField &field : fields) {
+        if (field.fault.empty())
+            names += (names.empty() ? "" : ", ") + field.name;
+    }
+    if (names.empty())
+        return Error{found == fields.end() ? fields.front().fault : found->fault};
+    if (found == fields.end())
+        return Error{fmt::format("there is no scalar field '{}', but {}", name, names)};
+    return Error{fmt::format("{} (--field may be {})", found->fault, names)};
+}
+
+std::size_t leave_out_unused_points(TetGrid &grid)
+{
+    constexpr auto unused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> places(grid.points.size(), unused);
+    for (const glm::uvec4 &cell : grid.cells) {
+        for (int corner = 0; corner < 4; ++corner)
+            places[cell[corner]] = 0;
+    }
+    std::uint32_t kept = 0;
+    for (std::uint32_t &place : places)
+        place = place == unused ? unused : kept++;
+    if (kept == places.size())
+        return 0;
+
+    const auto compact = [&places, kept](auto &items) {
+        if (items.size() != places.size())
+            return; // Of a field with a fault.
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            if (places[i] != unused)
+                items[places[i]] = items[i];
+        }
+        items.resize(kept);
+    };
+    compact(grid.points);
+    for (ScalarField &field : grid.fields)
+        compact(field.values);
+    for (glm::uvec4 &cell : grid.cells)
+        cell = {places[cell[0]], places[cell[1]], places[cell[2]], places[cell[3]]};
+    return places.size() - kept;
+}
+
+std::size_t join_points(TetGrid &grid, const ScalarField &field)
+{
+    // Places in the order of coordinates and value: equal ones follow one another, the first of
+    // the grid first.
+    std::vector<std::pair<std::array<float, 4>, std::uint32_t>> sorted;
+    for (std::uint32_t i = 0; i < grid.points.size(); ++i) {
+        const glm::vec3 &p = grid.points[i];
+        sorted.push_back({{p.x, p.y, p.z, field.values[i]}, i});
+    }
+    std::ranges::sort(sorted);
+    std::vector<std::uint32_t> first_of(sorted.size());
+    std::uint32_t first = 0;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        if (i == 0 || sorted[i].first != sorted[i - 1].first)
+            first = sorted[i].second;
+        first_of[sorted[i].second] = first;
+    }
+    for (glm::uvec4 &cell : grid.cells)
+        cell = {first_of[cell[0]], first_of[cell[1]], first_of[cell[2]], first_of[cell[3]]};
+    return leave_out_unused_points(grid);
 }
 
 BoundingSphere fit_to_unit_sphere(TetGrid &grid)

@@ -21,9 +21,14 @@
 namespace kb
 {
 
+/// Where floats are too coarse for numbers (a pressure of 101325.01, coordinates on a map) there is
+/// an offset of all: what is stored is what is left without it.
 struct ScalarField {
     std::string name;
     std::vector<float> values; ///< One a point.
+    double offset = 0.0;
+    std::size_t components = 1; ///< Of the file's array; the values of several are magnitudes.
+    std::string fault = {};     ///< Why it cannot be drawn; empty if it can.
 };
 
 /// Cells are oriented as VTK's: seen from point 3, points 0, 1, 2 go counterclockwise, so that
@@ -32,12 +37,15 @@ struct TetGrid {
     std::vector<glm::vec3> points;
     std::vector<glm::uvec4> cells;
     std::vector<ScalarField> fields;
+    glm::dvec3 origin{0.0};        ///< The offset of the points.
+    std::size_t unused_points = 0; ///< Of the file; left out, as no cell has them.
 };
 
 /// Particles.
 struct PointSet {
     std::vector<glm::vec3> points;
     std::vector<ScalarField> fields;
+    glm::dvec3 origin{0.0}; ///< The offset of the points.
 };
 
 /// The volume of a cell, negative if the cell is inverted; zero if what is left of it is no more
@@ -45,15 +53,17 @@ struct PointSet {
 double signed_volume(const TetGrid &grid, const glm::uvec4 &cell);
 
 /// An error that names the first thing that makes the grid unfit for drawing: no cells, a
-/// coordinate or value that is no finite number, a field that has not one value for each point, a
-/// cell with a point that is not there, an inverted cell or one without volume.
+/// coordinate or value that is no finite number, a field that has not one value for each point (but
+/// for fields whose fault is known), a cell with a point that is not there, an inverted cell or one
+/// without volume.
 Status check_tet_grid(const TetGrid &grid);
 
 /// The same, of points and fields.
 Status check_point_set(const PointSet &set);
 
 /// Reads a legacy VTK file, ASCII or binary, with an unstructured grid of tetrahedra. The fields
-/// are the arrays of its points; of a vector, the magnitude. The grid has passed check_tet_grid.
+/// are the arrays of its points that are no text; of a vector, the magnitude. What is wrong with a
+/// field is its fault, and an error only of find_field. The grid has passed check_tet_grid.
 Result<TetGrid> load_tet_grid(const std::filesystem::path &path);
 
 /// The same, of a file's content.
@@ -71,6 +81,17 @@ std::string describe(const GridRepairs &repairs);
 /// Leaves cells without volume out and turns inverted ones.
 GridRepairs repair_tet_grid(TetGrid &grid);
 
+/// Leaves points that no cell has out; how many.
+std::size_t leave_out_unused_points(TetGrid &grid);
+
+/// Makes one point of those that are in one place and have one value of a field of the grid, so
+/// that cells with points of their own, as finite element codes write them, share their faces; how
+/// many points fewer there are.
+std::size_t join_points(TetGrid &grid, const ScalarField &field);
+
+/// How many points both left out, for people; nothing of none.
+std::string describe_left_out(std::size_t unused_points, std::size_t joined_points);
+
 /// As load_tet_grid, but repairs the grid before it is checked.
 Result<TetGrid> load_and_repair_tet_grid(const std::filesystem::path &path, GridRepairs &repairs);
 
@@ -78,7 +99,8 @@ Result<TetGrid> load_and_repair_tet_grid(const std::filesystem::path &path, Grid
 /// data or an unstructured grid, whatever cells it has. The set has passed check_point_set.
 Result<PointSet> load_point_set(const std::filesystem::path &path);
 
-/// The field of that name, or the first if the name is empty. An error lists the names.
+/// The field of that name, or the first if the name is empty. An error tells its fault or lists the
+/// names.
 Result<const ScalarField *> find_field(const std::vector<ScalarField> &fields,
                                        std::string_view name);
 inline Result<const ScalarField *> find_field(const TetGrid &grid, std::string_view name)

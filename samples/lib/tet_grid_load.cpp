@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <span>
 #include <utility>
 
 namespace kb
@@ -27,17 +30,99 @@ static std::string cell_type_name(std::int64_t type)
     return fmt::format("{} (type {})", name ? name : "no tetrahedron", type);
 }
 
-static Result<TetGrid> make_grid(LegacyVtk &&vtk)
+namespace
 {
-    if (vtk.is_polygonal)
-        return Error{"its data set is POLYDATA, not UNSTRUCTURED_GRID: a surface has no cells"};
-    const std::size_t cells = vtk.offsets.empty() ? 0 : vtk.offsets.size() - 1;
-    if (vtk.cell_types.size() != cells)
+
+/// Numbers as floats, and what has to be added to them.
+struct Floats {
+    std::vector<float> values;
+    double offset;
+};
+
+/// Takes an offset off numbers of which those count that are chosen, if rounding them to floats as
+/// they are loses more than rounding what is left.
+template <class Chosen>
+Floats to_floats(std::span<const double> numbers, const Chosen &is_chosen)
+{
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    double loss = 0.0;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (!is_chosen(i) || !std::isfinite(static_cast<float>(numbers[i])))
+            continue;
+        low = std::min(low, numbers[i]);
+        high = std::max(high, numbers[i]);
+        loss = std::max(loss, std::abs(numbers[i] - double(static_cast<float>(numbers[i]))));
+    }
+    // Half a unit in the last place of floats as large as the extent.
+    const bool is_far = low <= high && loss > (high - low) * 0x1p-24;
+    Floats floats{std::vector<float>(numbers.size()), is_far ? low : 0.0};
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        floats.values[i] = static_cast<float>(numbers[i] - floats.offset);
+    return floats;
+}
+
+/// The points of a file, of which those count that are chosen.
+template <class Chosen>
+Status take_points(std::span<const glm::dvec3> points, const Chosen &is_chosen,
+                   std::vector<glm::vec3> &taken, glm::dvec3 &origin)
+{
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::dvec3 &p = points[i];
+        if (is_chosen(i) && !(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
+            return Error{fmt::format("point {} is not finite", i)};
+    }
+    taken.resize(points.size());
+    std::vector<double> coordinates(points.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            coordinates[i] = points[i][axis];
+        const Floats floats = to_floats(coordinates, is_chosen);
+        origin[axis] = floats.offset;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            taken[i][axis] = floats.values[i];
+    }
+    return ok;
+}
+
+/// The arrays of a file's points, of which those count that are chosen.
+template <class Chosen>
+std::vector<ScalarField> take_fields(std::vector<VtkArray> &&arrays, std::size_t points,
+                                     const Chosen &is_chosen)
+{
+    std::vector<ScalarField> fields;
+    for (VtkArray &array : arrays) {
+        ScalarField field;
+        field.name = std::move(array.name);
+        field.components = array.components;
+        if (array.values.size() != points) {
+            field.fault = fmt::format("the field '{}' has {} values, but there are {} points",
+                                      field.name, array.values.size(), points);
+            fields.push_back(std::move(field));
+            continue;
+        }
+        Floats floats = to_floats(array.values, is_chosen);
+        field.values = std::move(floats.values);
+        field.offset = floats.offset;
+        for (std::size_t i = 0; i < points && field.fault.empty(); ++i) {
+            if (is_chosen(i) && !std::isfinite(field.values[i]))
+                field.fault =
+                    fmt::format("the value of '{}' at point {} is {}", field.name, i,
+                                std::isnan(field.values[i]) ? "not a number" : "infinite");
+        }
+        fields.push_back(std::move(field));
+    }
+    return fields;
+}
+
+Result<std::vector<glm::uvec4>> take_cells(const LegacyVtk &vtk)
+{
+    const std::size_t count = vtk.offsets.empty() ? 0 : vtk.offsets.size() - 1;
+    if (vtk.cell_types.size() != count)
         return Error{
-            fmt::format("there are {} cells, but {} cell types", cells, vtk.cell_types.size())};
-    TetGrid grid;
-    grid.cells.resize(cells);
-    for (std::size_t i = 0; i < cells; ++i) {
+            fmt::format("there are {} cells, but {} cell types", count, vtk.cell_types.size())};
+    std::vector<glm::uvec4> cells(count);
+    for (std::size_t i = 0; i < count; ++i) {
         const std::int64_t size = vtk.offsets[i + 1] - vtk.offsets[i];
         if (vtk.cell_types[i] != vtk_tetra)
             return Error{fmt::format("cell {} is {}; scripts/convert-grid makes tetrahedra of it",
@@ -51,14 +136,35 @@ static Result<TetGrid> make_grid(LegacyVtk &&vtk)
             if (static_cast<std::size_t>(point) >= vtk.points.size())
                 return Error{fmt::format("cell {} has point {}, but there are {} points", i, point,
                                          vtk.points.size())};
-            grid.cells[i][corner] = static_cast<std::uint32_t>(point);
+            cells[i][corner] = static_cast<std::uint32_t>(point);
         }
     }
-    if (vtk.point_fields.empty() && vtk.has_cell_data)
+    return cells;
+}
+
+} // namespace
+
+static Result<TetGrid> make_grid(LegacyVtk &&vtk)
+{
+    if (vtk.is_polygonal)
+        return Error{"its data set is POLYDATA, not UNSTRUCTURED_GRID: a surface has no cells"};
+    auto cells = take_cells(vtk);
+    if (!cells)
+        return cells.error();
+    if (vtk.point_arrays.empty() && vtk.has_cell_data)
         return Error{"it has values for its cells alone; scripts/convert-grid makes values of "
                      "points of them"};
-    grid.points = std::move(vtk.points);
-    grid.fields = std::move(vtk.point_fields);
+    TetGrid grid;
+    grid.cells = std::move(*cells);
+    std::vector<bool> used(vtk.points.size());
+    for (const glm::uvec4 &cell : grid.cells) {
+        for (int corner = 0; corner < 4; ++corner)
+            used[cell[corner]] = true;
+    }
+    const auto is_used = [&used](std::size_t i) { return used[i]; };
+    if (auto taken = take_points(vtk.points, is_used, grid.points, grid.origin); !taken)
+        return taken.error();
+    grid.fields = take_fields(std::move(vtk.point_arrays), vtk.points.size(), is_used);
     return grid;
 }
 
@@ -72,6 +178,7 @@ static Result<TetGrid> parse(std::string_view text, GridRepairs *repairs)
         return grid;
     if (repairs)
         *repairs = repair_tet_grid(*grid);
+    grid->unused_points = leave_out_unused_points(*grid);
     if (auto checked = check_tet_grid(*grid); !checked)
         return checked.error();
     return grid;
@@ -82,7 +189,11 @@ static Result<PointSet> parse_point_set(std::string_view text)
     auto vtk = parse_legacy_vtk(text);
     if (!vtk)
         return vtk.error();
-    PointSet set{std::move(vtk->points), std::move(vtk->point_fields)};
+    const auto is_chosen = [](std::size_t) { return true; };
+    PointSet set;
+    if (auto taken = take_points(vtk->points, is_chosen, set.points, set.origin); !taken)
+        return taken.error();
+    set.fields = take_fields(std::move(vtk->point_arrays), vtk->points.size(), is_chosen);
     if (auto checked = check_point_set(set); !checked)
         return checked.error();
     return set;

@@ -46,6 +46,12 @@ static std::optional<T> to_number(std::string_view word)
 {
     if (word.starts_with('+'))
         word.remove_prefix(1);
+    if constexpr (std::floating_point<T>) {
+        // 1.#INF, -1.#IND, 1.#QNAN: as Windows used to print what is not finite.
+        if (const auto mark = word.find(".#"); mark != std::string_view::npos)
+            return word.substr(mark) == ".#INF" ? std::numeric_limits<T>::infinity()
+                                                : std::numeric_limits<T>::quiet_NaN();
+    }
     T value{};
     const char *const end = word.data() + word.size();
     const auto result = std::from_chars(word.data(), end, value);
@@ -119,12 +125,22 @@ std::vector<T> VtkText::binary_numbers(std::size_t wanted)
     for (std::size_t i = 0; i < wanted; ++i) {
         std::array<char, sizeof(Stored)> bytes{};
         std::memcpy(bytes.data(), rest_.data() + i * sizeof(Stored), sizeof(Stored));
-        if constexpr (std::endian::native == std::endian::little)
+        if (is_little_endian != (std::endian::native == std::endian::little))
             std::ranges::reverse(bytes);
         numbers[i] = static_cast<T>(std::bit_cast<Stored>(bytes));
     }
     rest_.remove_prefix(wanted * sizeof(Stored));
     return numbers;
+}
+
+/// Eight in a byte, the first one in its highest bit.
+std::vector<double> VtkText::binary_bits(std::size_t wanted)
+{
+    const auto bytes = binary_numbers<unsigned char, unsigned char>(wanted / 8 + (wanted % 8 != 0));
+    std::vector<double> bits(failed() ? 0 : wanted);
+    for (std::size_t i = 0; i < bits.size(); ++i)
+        bits[i] = bytes[i / 8] >> (7 - i % 8) & 1;
+    return bits;
 }
 
 template <class Stored, class T>
@@ -135,15 +151,18 @@ std::vector<T> VtkText::ascii_numbers(std::size_t wanted)
         fail("it ends early");
         return {};
     }
-    // Characters are written as numbers.
-    using Written = std::conditional_t<sizeof(Stored) == 1, int, Stored>;
+    // Characters are written as numbers, and what is said to be floats may have more digits.
+    using Written = std::conditional_t<std::floating_point<T>, T, Stored>;
     std::vector<T> numbers(wanted);
     for (T &number : numbers) {
         const std::string_view digits = word();
         const auto read = to_number<Written>(digits);
         if (!read) {
             fail(digits.empty() ? "it ends early"
-                                : fmt::format("{} is no number of its type", quoted(digits)));
+                                : fmt::format("{} is no number of its type{}", quoted(digits),
+                                              digits.find(',') == std::string_view::npos
+                                                  ? ""
+                                                  : ": numbers have a point, no comma"));
             return {};
         }
         number = static_cast<T>(*read);
@@ -168,6 +187,8 @@ std::vector<T> VtkText::numbers(std::string_view type, std::size_t wanted)
     if (is_keyword(type, "LONG") || is_keyword(type, "VTKTYPEINT64"))
         return stored_as<std::int64_t, T>(wanted);
     if constexpr (std::floating_point<T>) {
+        if (is_keyword(type, "BIT"))
+            return is_binary ? binary_bits(wanted) : ascii_numbers<unsigned char, T>(wanted);
         if (is_keyword(type, "FLOAT"))
             return stored_as<float, T>(wanted);
         if (is_keyword(type, "DOUBLE"))
@@ -178,7 +199,7 @@ std::vector<T> VtkText::numbers(std::string_view type, std::size_t wanted)
             return stored_as<std::int16_t, T>(wanted);
         if (is_keyword(type, "UNSIGNED_SHORT"))
             return stored_as<std::uint16_t, T>(wanted);
-        if (is_keyword(type, "CHAR"))
+        if (is_keyword(type, "CHAR") || is_keyword(type, "SIGNED_CHAR"))
             return stored_as<signed char, T>(wanted);
         if (is_keyword(type, "UNSIGNED_CHAR"))
             return stored_as<unsigned char, T>(wanted);
@@ -187,19 +208,62 @@ std::vector<T> VtkText::numbers(std::string_view type, std::size_t wanted)
     return {};
 }
 
-std::vector<float> VtkText::floats(std::string_view type, std::size_t items, std::size_t components)
+std::vector<double> VtkText::reals(std::string_view type, std::size_t items, std::size_t components)
 {
-    // Such a product may be larger than any number; no file is.
-    if (components != 0 && items > rest_.size() / components) {
+    // Such a product may be larger than any number; no file is. A byte has eight bits.
+    if (components != 0 && items > 8 * rest_.size() / components) {
         fail("it ends early");
         return {};
     }
-    return numbers<float>(type, items * components);
+    return numbers<double>(type, items * components);
 }
 
 std::vector<std::int64_t> VtkText::integers(std::string_view type, std::size_t items)
 {
     return numbers<std::int64_t>(type, items);
+}
+
+bool VtkText::is_text(std::string_view type)
+{
+    return is_keyword(type, "STRING") || is_keyword(type, "UTF8_STRING") ||
+           is_keyword(type, "VARIANT");
+}
+
+/// The number of bytes that follow: the two highest bits of the first byte say in how many bytes
+/// it is written (3: 1, 2: 2, 1: 4, 0: 8), the others are its first digits.
+std::size_t VtkText::binary_text_size()
+{
+    const auto byte = [this](std::size_t i) { return static_cast<unsigned char>(rest_[i]); };
+    const std::size_t bytes = rest_.empty() ? 1 : std::size_t(1) << (3 - (byte(0) >> 6));
+    if (bytes > rest_.size()) {
+        fail("it ends early");
+        return 0;
+    }
+    std::size_t size = byte(0) & 0x3FU;
+    for (std::size_t i = 1; i < bytes; ++i)
+        size = size << 8 | byte(i);
+    rest_.remove_prefix(bytes);
+    return size;
+}
+
+void VtkText::skip_texts(std::string_view type, std::size_t items, std::size_t components)
+{
+    line(); // The block begins after the end of the line that announces it.
+    if (components != 0 && items > rest_.size() / components)
+        return fail("it ends early");
+    const bool has_sizes = is_binary && !is_keyword(type, "VARIANT");
+    for (std::size_t i = 0; i < items * components && !failed(); ++i) {
+        if (rest_.empty())
+            return fail("it ends early");
+        if (!has_sizes) {
+            line(); // What would break it is encoded.
+            continue;
+        }
+        const std::size_t size = binary_text_size();
+        if (size > rest_.size())
+            return fail("it ends early");
+        rest_.remove_prefix(size);
+    }
 }
 
 } // namespace kb

@@ -29,6 +29,7 @@ public:
     explicit VtkText(std::string_view text) : rest_(text) {}
 
     bool is_binary = false;
+    bool is_little_endian = false; ///< Binary numbers, against the format.
 
     void fail(const std::string &reason);
     bool failed() const { return !error_.empty(); }
@@ -44,13 +45,21 @@ public:
     std::string_view next_line_begin() const;
     std::size_t count(const char *of_what);
 
-    /// A block of items with so many components, stored as the named type.
-    std::vector<float> floats(std::string_view type, std::size_t items, std::size_t components = 1);
+    /// A block of items with so many components, stored as the named type. What ASCII files call
+    /// floats is read with all of its digits.
+    std::vector<double> reals(std::string_view type, std::size_t items, std::size_t components = 1);
     std::vector<std::int64_t> integers(std::string_view type, std::size_t items);
+
+    /// Whether items of that type are no numbers but text.
+    static bool is_text(std::string_view type);
+    /// A block of so many pieces of text.
+    void skip_texts(std::string_view type, std::size_t items, std::size_t components = 1);
 
 private:
     template <class T>
     std::vector<T> numbers(std::string_view type, std::size_t wanted);
+    std::vector<double> binary_bits(std::size_t wanted);
+    std::size_t binary_text_size();
     template <class Stored, class T>
     std::vector<T> stored_as(std::size_t wanted);
     template <class Stored, class T>

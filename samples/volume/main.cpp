@@ -97,6 +97,7 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
     if (auto written = kb::write_outputs({options.picture, options.floats, {}}, opaque, {});
         !written)
         return Failure{written.error(), kb::exit_bad_input};
+    report.covered = kb::count_covered(image);
     report.faces = faces.count();
     report.drawn = faces.order().size();
     report.passes = (*renderer)->passes();
@@ -139,6 +140,13 @@ int main(int argc, char **argv)
     }
 
     try {
+        if (options.list_fields) {
+            const auto fields = kb::list_fields(options.scene);
+            if (!fields)
+                return kb::fail(app, fields.error(), kb::exit_bad_input);
+            fmt::print("{}", *fields);
+            return 0;
+        }
         const auto scene = kb::make_volume_scene(options.scene);
         if (!scene)
             return kb::fail(app, scene.error(), kb::exit_bad_input);

@@ -98,14 +98,6 @@ std::int32_t to_subpixels(float position)
 
 } // namespace
 
-ScalarRange range_of(std::span<const float> values)
-{
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    if (low == values.end())
-        return {};
-    return {*low, *high > *low ? *high : *low + 1.0F};
-}
-
 SortedFaces::SortedFaces(const Gl &gl, const FaceMesh &mesh, ScalarRange range, FaceOrder order)
     : gl_(&gl), range_(range), array_(gl), vertex_buffer_(gl), index_buffer_(gl),
       triangles_(mesh.triangles), interior_count_(mesh.interior_count),

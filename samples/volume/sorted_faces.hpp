@@ -6,7 +6,7 @@
 #include "cell_order.hpp"
 #include "faces.hpp"
 #include "gl_objects.hpp"
-#include "transfer_function.hpp"
+#include "scalar_range.hpp"
 
 #include <glm/vec4.hpp>
 
@@ -103,8 +103,5 @@ private:
     bool eye_is_inside_ = false;
     std::vector<std::uint32_t> order_;
 };
-
-/// The extent of a field; {0, 1} more than its value if all values are the same.
-ScalarRange range_of(std::span<const float> values);
 
 } // namespace kb

@@ -54,22 +54,24 @@ Error at_line(int line, std::string_view what)
     return Error{fmt::format("transfer function, line {}: {}", line, what)};
 }
 
-/// A point of a line: five numbers, no more.
-Result<TransferPoint> parse_point(const std::string &line)
+/// A point of a line: five numbers, no more. The offset is taken off the value.
+Result<TransferPoint> parse_point(const std::string &line, double offset)
 {
     std::istringstream stream(line);
     std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
     if (words.size() != 5)
         return Error{
             fmt::format("value red green blue extinction are wanted, not {} words", words.size())};
-    std::array<float, 5> numbers{};
+    std::array<double, 5> numbers{};
     for (std::size_t i = 0; i < words.size(); ++i) {
         char *end = nullptr;
-        numbers[i] = std::strtof(words[i].c_str(), &end);
+        numbers[i] = std::strtod(words[i].c_str(), &end);
         if (*end != '\0')
             return Error{fmt::format("{} is not a number", words[i])};
     }
-    return TransferPoint{numbers[0], {numbers[1], numbers[2], numbers[3]}, numbers[4]};
+    const auto number = [&numbers](std::size_t i) { return static_cast<float>(numbers[i]); };
+    return TransferPoint{
+        static_cast<float>(numbers[0] - offset), {number(1), number(2), number(3)}, number(4)};
 }
 
 std::string without_comment(std::string line)
@@ -85,19 +87,23 @@ bool is_blank(const std::string &line)
 
 } // namespace
 
-Result<TransferFunction> TransferFunction::make(std::vector<TransferPoint> points)
+Result<TransferFunction> TransferFunction::make(std::vector<TransferPoint> points, double offset)
 {
     if (points.empty())
         return Error{"the transfer function has no points"};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const TransferPoint &point = points[i];
+        const auto in_units = [offset](float value) {
+            return offset == 0.0 ? fmt::format("{}", value)
+                                 : fmt::format("{:.12g}", offset + value);
+        };
         if (!std::isfinite(point.value))
             return Error{fmt::format("transfer function, point {}: the value {} is not finite",
-                                     i + 1, point.value)};
+                                     i + 1, in_units(point.value))};
         if (i > 0 && point.value < points[i - 1].value)
             return Error{fmt::format("transfer function, point {}: values must ascend, {} follows "
                                      "{}",
-                                     i + 1, point.value, points[i - 1].value)};
+                                     i + 1, in_units(point.value), in_units(points[i - 1].value))};
         for (int c = 0; c < 3; ++c) {
             if (!(point.color[c] >= 0.0F && point.color[c] <= 1.0F))
                 return Error{fmt::format("transfer function, point {}: {} is no color from 0 to 1",
@@ -158,12 +164,12 @@ Result<TransferFunction> parse_transfer_function(std::string_view text, ScalarRa
             normalized = true;
             continue;
         }
-        const auto point = parse_point(line);
+        const auto point = parse_point(line, normalized ? 0.0 : range.offset);
         if (!point)
             return at_line(number, point.error().message);
         points.push_back(*point);
     }
-    auto function = TransferFunction::make(std::move(points));
+    auto function = TransferFunction::make(std::move(points), normalized ? 0.0 : range.offset);
     if (!function || normalized)
         return function;
     return function->normalized(range.low, range.high);

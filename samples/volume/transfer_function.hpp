@@ -10,6 +10,7 @@
 #pragma once
 
 #include "result.hpp"
+#include "scalar_range.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -33,7 +34,8 @@ class TransferFunction
 public:
     /// At least one point, values ascending and finite, colors from 0 to 1. Where two points have
     /// the same value the function steps. Outside the points it is as at the first and the last.
-    static Result<TransferFunction> make(std::vector<TransferPoint> points);
+    /// Errors tell values with the offset added.
+    static Result<TransferFunction> make(std::vector<TransferPoint> points, double offset = 0.0);
 
     TransferPoint at(float value) const;
 
@@ -46,11 +48,6 @@ private:
     explicit TransferFunction(std::vector<TransferPoint> points) : points_(std::move(points)) {}
 
     std::vector<TransferPoint> points_;
-};
-
-struct ScalarRange {
-    float low = 0.0F;
-    float high = 1.0F;
 };
 
 /// Text, one point a line: value red green blue extinction; # begins a comment. A line `normalized`

@@ -38,6 +38,8 @@ static void declare_scene_options(CLI::App &app, VolumeSceneOptions &options)
 void declare_options(CLI::App &app, VolumeOptions &options)
 {
     declare_scene_options(app, options.scene);
+    app.add_flag("--list-fields", options.list_fields,
+                 "Print the grid's fields with their ranges, and draw nothing");
     app.add_option("--k", options.k,
                    fmt::format("Fragments that wait in the k-buffer, 1 to {} (with --exact: that a "
                                "pass takes)",

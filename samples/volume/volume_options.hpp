@@ -28,6 +28,7 @@ struct VolumeSceneOptions {
 
 struct VolumeOptions {
     VolumeSceneOptions scene;
+    bool list_fields = false; ///< That, and nothing else.
     Size size;
     int k = 6;
     bool exact = false;

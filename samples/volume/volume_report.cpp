@@ -2,14 +2,14 @@
 
 #include "volume_report.hpp"
 
-#include "image.hpp"
+#include "report_json.hpp"
 #include "timing.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace kb
 {
@@ -33,41 +33,54 @@ double whole(const VolumeReport::Frame &frame)
     return frame.sort + frame.draw;
 }
 
-json to_json(const DisorderReport &report, int k)
-{
-    json document{{"displacement", report.fragments.displacement()},
-                  {"pixels", report.fragments.pixels()},
-                  {"fragments", report.fragments.fragments()},
-                  {"deepest", report.fragments.deepest()}};
-    if (report.colors) {
-        document["share_wrong"] = report.fragments.share_wrong(k);
-        document["color_error"] = {{"max", report.colors->max},
-                                   {"rmse", report.colors->rmse},
-                                   {"share", report.colors->share}};
-    }
-    return document;
-}
-
-json to_json(glm::vec3 v)
-{
-    return json::array({v.x, v.y, v.z});
-}
-
 /// Infinite extinction is a word, as JSON has no such number.
 json to_json(const TransferPoint &point, ScalarRange range)
 {
-    const float value = range.low + point.value * (range.high - range.low);
+    const double value =
+        range.in_units(range.low) + double(point.value) * (double(range.high) - double(range.low));
     return json::array({value, point.color.r, point.color.g, point.color.b,
                         std::isinf(point.extinction) ? json("inf") : json(point.extinction)});
 }
 
+/// Why nothing is to be seen.
+std::string describe_emptiness(const VolumeScene &scene)
+{
+    // Extinction is linear between points, and as at the ends outside of them.
+    const auto absorbs = [&scene](float value) {
+        return scene.transfer.at(value).extinction > 0.0F;
+    };
+    const bool absorbs_any =
+        absorbs(0.0F) || absorbs(1.0F) ||
+        std::ranges::any_of(scene.transfer.points(), [](const TransferPoint &point) {
+            return point.value >= 0.0F && point.value <= 1.0F && point.extinction > 0.0F;
+        });
+    if (!absorbs_any)
+        return "the transfer function gives no value of the field an extinction";
+    if (!scene.range.varies)
+        return "the transfer function gives the field's only value no extinction, or nothing is in "
+               "view";
+    return "nothing of the grid that has an extinction is in view";
+}
+
 } // namespace
+
+std::size_t count_covered(const ImageRgbaF &image)
+{
+    return static_cast<std::size_t>(
+        std::ranges::count_if(image.pixels, [](const glm::vec4 &pixel) { return pixel.a > 0.0F; }));
+}
 
 void print_report(const VolumeOptions &options, const VolumeScene &scene,
                   const VolumeReport &report)
 {
     if (options.scene.repair)
         fmt::print("{}\n", describe(scene.repairs));
+    fmt::print("grid: {} points, {} cells{}; {}; transfer function: {}\n", scene.grid.points.size(),
+               scene.grid.cells.size(),
+               describe_left_out(scene.grid.unused_points, scene.joined_points),
+               scene.field_description,
+               options.scene.transfer_points.empty() ? options.scene.transfer
+                                                     : options.scene.transfer_points);
     if (report.clusters > 0)
         fmt::print("joined: {} cells in {} clusters, {} faces in them are not drawn ({:.0f} ms, "
                    "once)\n",
@@ -83,6 +96,10 @@ void print_report(const VolumeOptions &options, const VolumeScene &scene,
                report.faces, report.bytes_per_pixel);
     if (report.disorder)
         fmt::print("{}\n", describe(*report.disorder, options.k));
+    if (report.covered == 0)
+        fmt::print(stderr, "volume: the picture is empty: {}\n", describe_emptiness(scene));
+    else if (!scene.range.varies)
+        fmt::print(stderr, "volume: the picture has one color: {}\n", scene.field_description);
 }
 
 Status write_report(const std::filesystem::path &path, const VolumeOptions &options,
@@ -94,20 +111,21 @@ Status write_report(const std::filesystem::path &path, const VolumeOptions &opti
     json times = json::array();
     for (const VolumeReport::Frame &frame : report.frames)
         times.push_back(whole(frame));
-    const OrbitCamera &camera = options.scene.camera;
     json document{
         {"grid", options.scene.grid.empty() ? json() : json(options.scene.grid.string())},
         {"cubes", options.scene.cubes},
         {"repair", options.scene.repair},
         {"field", scene.field},
+        {"range", to_json(scene.range)},
+        {"points", scene.grid.points.size()},
+        {"cells", scene.grid.cells.size()},
+        {"unused_points", scene.grid.unused_points},
+        {"joined_points", scene.joined_points},
+        {"pixels_covered", report.covered},
         {"center", to_json(scene.center)},
         {"radius", scene.radius},
         {"transfer", transfer},
-        {"camera",
-         {{"azimuth", camera.azimuth},
-          {"elevation", camera.elevation},
-          {"distance", camera.distance},
-          {"field_of_view", camera.field_of_view}}},
+        {"camera", to_json(options.scene.camera)},
         {"size", {options.size.width, options.size.height}},
         {"background", to_json(options.background)},
         {"k", options.k},
@@ -129,8 +147,7 @@ Status write_report(const std::filesystem::path &path, const VolumeOptions &opti
     };
     if (report.disorder)
         document["disorder"] = to_json(*report.disorder, options.k);
-    const std::string text = document.dump(2) + "\n";
-    return write_file(path, std::as_bytes(std::span(text)));
+    return write_json(path, document);
 }
 
 } // namespace kb

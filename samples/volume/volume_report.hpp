@@ -3,6 +3,7 @@
 #pragma once
 
 #include "disorder_report.hpp"
+#include "image.hpp"
 #include "volume_options.hpp"
 #include "volume_scene.hpp"
 
@@ -24,13 +25,18 @@ struct VolumeReport {
     std::size_t inner_faces = 0; ///< Within clusters.
     double cluster_time = 0.0;   ///< Milliseconds, once for all frames.
     std::size_t faces = 0;       ///< Without those.
+    std::size_t covered = 0;     ///< Pixels with anything but the background.
     std::size_t drawn = 0;       ///< Without those that cover no pixel either.
     int passes = 0;
     int bytes_per_pixel = 0;
     std::optional<DisorderReport> disorder;
 };
 
-/// A line for people, and one about disorder.
+/// Pixels with an alpha above zero.
+std::size_t count_covered(const ImageRgbaF &image);
+
+/// Lines for people: what was drawn, what it cost, its disorder, and why nothing is to be seen if
+/// that is so.
 void print_report(const VolumeOptions &options, const VolumeScene &scene,
                   const VolumeReport &report);
 

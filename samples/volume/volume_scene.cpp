@@ -39,17 +39,31 @@ Result<VolumeScene> make_volume_scene(const VolumeSceneOptions &options)
     const auto field = find_field(*grid, options.field);
     if (!field)
         return field.error();
-    const ScalarRange range = range_of((*field)->values);
+    const std::size_t joined = options.grid.empty() ? 0 : join_points(*grid, **field);
+    const ScalarRange range = range_of(**field);
     auto transfer = make_transfer(options, range);
     if (!transfer)
         return transfer.error();
 
     const BoundingSphere sphere = fit_to_unit_sphere(*grid);
+    const glm::dvec3 center = grid->origin + glm::dvec3(sphere.center);
     FaceMesh faces = make_face_mesh(*grid, **field);
     const std::string name = (*field)->name;
-    return VolumeScene{
-        std::move(*grid),    repairs, name, range, sphere.center, sphere.radius, std::move(faces),
-        std::move(*transfer)};
+    const std::string description = describe_field(**field);
+    return VolumeScene{std::move(*grid), repairs,
+                       joined,           name,
+                       description,      range,
+                       center,           sphere.radius,
+                       std::move(faces), std::move(*transfer)};
+}
+
+Result<std::string> list_fields(const VolumeSceneOptions &options)
+{
+    GridRepairs repairs;
+    const auto grid = make_grid(options, repairs);
+    if (!grid)
+        return grid.error();
+    return list_fields(grid->fields);
 }
 
 } // namespace kb

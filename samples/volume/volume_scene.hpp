@@ -17,9 +17,11 @@ namespace kb
 struct VolumeScene {
     TetGrid grid;
     GridRepairs repairs;
+    std::size_t joined_points = 0; ///< See join_points.
     std::string field;
+    std::string field_description;
     ScalarRange range; ///< Of the field.
-    glm::vec3 center;  ///< Of the grid as it came: a point p is now (p - center) / radius.
+    glm::dvec3 center; ///< Of the grid as it came: a point p is now (p - center) / radius.
     float radius;
     FaceMesh faces;
     TransferFunction transfer; ///< Normalized to the range.
@@ -27,5 +29,8 @@ struct VolumeScene {
 
 /// Errors are those of the input.
 Result<VolumeScene> make_volume_scene(const VolumeSceneOptions &options);
+
+/// The grid's fields for people, see list_fields.
+Result<std::string> list_fields(const VolumeSceneOptions &options);
 
 } // namespace kb

@@ -24,11 +24,13 @@ static glm::dvec3 color_of(const json &list, std::size_t first)
     return {list.at(first), list.at(first + 1), list.at(first + 2)};
 }
 
-static Medium medium_of(const json &list)
+/// Of scalars without the field's offset.
+static Medium medium_of(const json &list, double offset)
 {
     std::vector<ControlPoint> points;
     for (const json &point : list)
-        points.push_back({point.at(0), color_of(point, 1), extinction_of(point.at(4))});
+        points.push_back(
+            {point.at(0).get<double>() - offset, color_of(point, 1), extinction_of(point.at(4))});
     return Medium(std::move(points));
 }
 
@@ -59,7 +61,9 @@ Result<Scene> load_scene(const std::filesystem::path &path)
         if (!field)
             return field.error();
         std::vector<float> scalars = (*field)->values;
-        return Scene{std::move(*grid), std::move(scalars), medium_of(document.at("transfer")),
+        const double offset = (*field)->offset;
+        return Scene{std::move(*grid), std::move(scalars),
+                     medium_of(document.at("transfer"), offset),
                      view_of(document.at("camera"), document.at("size")),
                      color_of(document.at("background"), 0)};
     } catch (const json::exception &error) {

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// What the reports of volume and isosurface have in common.
+
+#pragma once
+
+#include "camera.hpp"
+#include "disorder_report.hpp"
+#include "result.hpp"
+#include "scalar_range.hpp"
+
+#include <glm/vec3.hpp>
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+
+namespace kb
+{
+
+/// For a picture by a k-buffer in which k fragments wait.
+nlohmann::json to_json(const DisorderReport &report, int k);
+
+nlohmann::json to_json(glm::dvec3 v);
+nlohmann::json to_json(const OrbitCamera &camera);
+
+/// Lowest and highest value, in the units of the field.
+nlohmann::json to_json(const ScalarRange &range);
+
+Status write_json(const std::filesystem::path &path, const nlohmann::json &document);
+
+} // namespace kb
