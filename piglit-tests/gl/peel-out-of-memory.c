@@ -19,10 +19,13 @@
 static __thread int countdown = -1;
 static __thread bool failed;
 
+/** Smaller ones do not count, and succeed. */
+static __thread size_t smallest = 0;
+
 static bool
-fails(void)
+fails(size_t size)
 {
-	if (countdown < 0 || countdown-- > 0)
+	if (countdown < 0 || size < smallest || countdown-- > 0)
 		return false;
 	failed = true;
 	return true;
@@ -43,7 +46,7 @@ extern void *__libc_memalign(size_t, size_t);
 void *
 malloc(size_t size)
 {
-	if (fails())
+	if (fails(size))
 		return NULL;
 	return __interceptor_malloc ? __interceptor_malloc(size) :
 		__libc_malloc(size);
@@ -52,7 +55,7 @@ malloc(size_t size)
 void *
 calloc(size_t n, size_t size)
 {
-	if (fails())
+	if (fails(n * size))
 		return NULL;
 	return __interceptor_calloc ? __interceptor_calloc(n, size) :
 		__libc_calloc(n, size);
@@ -61,7 +64,7 @@ calloc(size_t n, size_t size)
 void *
 realloc(void *old, size_t size)
 {
-	if (fails())
+	if (fails(size))
 		return NULL;
 	return __interceptor_realloc ? __interceptor_realloc(old, size) :
 		__libc_realloc(old, size);
@@ -70,7 +73,7 @@ realloc(void *old, size_t size)
 void *
 aligned_alloc(size_t alignment, size_t size)
 {
-	if (fails())
+	if (fails(size))
 		return NULL;
 	return __interceptor_memalign ?
 		__interceptor_memalign(alignment, size) :
@@ -207,9 +210,51 @@ first_draw(void *data)
 	return peel_end(&p, pass);
 }
 
+static void
+draw_one(struct peel *p)
+{
+	peel_draw_gl(p, &(struct peel_quad) { 0, 0, 16, 16, .125f, 99 }, 1);
+}
+
+/**
+ * Of a draw to more layers than any before, for which an implementation may
+ * need room in each of its threads.  All else that it allocates is smaller.
+ */
+static enum piglit_result
+more_layers(void *data)
+{
+	bool pass = true, more = true;
+	int n;
+
+	for (n = 0; n < 24 && more; n++) {
+		struct peel p = peel_simple(64 + 8 * n);
+
+		smallest = 1 << 20;
+		pass = try(&p, n, draw_one, &more) && pass;
+		smallest = 0;
+		if (more) {
+			pass = peel_check(&p) && pass;
+			draw_scene(&p);
+			pass = peel_check(&p) && pass;
+		}
+		peel_end(&p, pass);
+	}
+	if (n == 1 && kb_is_softpipe()) {
+		printf("it works on the layers themselves\n");
+		return PIGLIT_SKIP;
+	}
+	if (n == 1 || more) {
+		printf("after %d failures: %s\n", n, more ? "still not drawn" :
+		       "no memory is needed?");
+		pass = false;
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("first-layer", first_layer, NULL),
 	KB_SUBTEST("first-draw", first_draw, NULL),
+	KB_SUBTEST("more-layers", more_layers, NULL),
 	KB_SUBTEST_END
 };
 
