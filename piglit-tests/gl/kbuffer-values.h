@@ -116,8 +116,9 @@ kb_read_values(const struct kb *kb, const struct kb_format *f, int entry,
 
 /**
  * Compare what one way of drawing has stored with what another has, the one
- * without the extensions, and that with what GL says and the specifications
- * of the extensions.  Prints what differs.
+ * without the extensions, where that is what GL allows, and in any case with
+ * what GL allows and the specifications of the extensions say.  Prints what
+ * differs.
  */
 bool
 kb_check_values(const struct kb_format *f, kb_values values, kb_values plain,

@@ -70,8 +70,6 @@ private:
                                                 Func::greater, Func::gequal});
         scene_.depth_format = random_.any_of(
             std::array{DepthFormat::d32f, DepthFormat::d32f, DepthFormat::d16, DepthFormat::d24});
-        if (scene_.samples > 0 && scene_.depth_format == DepthFormat::d24)
-            scene_.depth_format = DepthFormat::d32f;
         static const std::vector<std::vector<ColorFormat>> attachments{
             {ColorFormat::rgba32f, ColorFormat::r32ui},
             {ColorFormat::rgba8, ColorFormat::r32ui},
@@ -296,7 +294,7 @@ private:
 
     std::optional<Box> scissor()
     {
-        if (scene_.samples > 0 || !random_.one_in(4))
+        if (!random_.one_in(4))
             return std::nullopt;
         return Box{random_.number(-2, scene_.width), random_.number(-2, scene_.height),
                    random_.number(0, scene_.width + 2), random_.number(0, scene_.height + 2)};

@@ -206,8 +206,6 @@ Status check_scene(const Scene &scene)
         return Error{fmt::format("k is {}, but 1 to {} are possible", scene.k, most)};
     if (scene.color_formats.size() > 4)
         return Error{"more than four color attachments"};
-    if (scene.samples > 0 && scene.depth_format == DepthFormat::d24)
-        return Error{"shaders read 24 bits of depth not exactly enough for samples"};
     if (scene.all_passes && scene.has_clears())
         return Error{"clears between draws make ranks of several passes meaningless"};
     if (scene.all_passes && (scene.func == Func::lequal || scene.func == Func::gequal))
@@ -224,9 +222,6 @@ Status check_scene(const Scene &scene)
         if (!(depth >= 0.0 && depth <= 1.0))
             return Error{fmt::format("a depth of {} is not in [0, 1]", depth)};
     }
-    if (scene.samples > 0 && std::any_of(scene.steps.begin(), scene.steps.end(),
-                                         [](const Step &step) { return step.scissor.has_value(); }))
-        return Error{"stock llvmpipe lets samples beside the scissor box pass"};
     for (const Step &step : scene.steps) {
         if (step.scissor && (step.scissor->width < 0 || step.scissor->height < 0))
             return Error{"the scissor box is negative"};
