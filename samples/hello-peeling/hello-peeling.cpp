@@ -5,7 +5,7 @@
 //
 //     c++ -std=c++20 hello-peeling.cpp $(pkg-config --cflags --libs osmesa)
 //
-// It draws, composes on the CPU, writes hello-peeling.ppm and checks one pixel.
+// It draws, composes on the CPU, writes a picture and checks one pixel.
 
 #define GL_GLEXT_PROTOTYPES 1
 #include <GL/gl.h>
@@ -14,6 +14,7 @@
 #include <GL/osmesa.h>
 
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -47,8 +48,17 @@ GLuint attach_layers(GLenum attachment, GLenum internal_format)
     return texture;
 }
 
-int main()
+int main(int argc, char **argv)
 {
+    const char *file = argc > 1 ? argv[1] : "hello-peeling.ppm";
+    if (argc > 2 || file[0] == '-') {
+        const bool help = argc == 2 && (!std::strcmp(file, "--help") || !std::strcmp(file, "-h"));
+        return std::fprintf(help ? stdout : stderr,
+                            "hello-peeling: usage: hello-peeling [FILE.ppm]: draws three "
+                            "translucent triangles\n"),
+               help ? 0 : 2;
+    }
+
     // A context in memory. Nothing is drawn into its own buffer.
     std::array<GLubyte, 4 * 16 * 16> unused{};
     OSMesaContext context = OSMesaCreateContext(OSMESA_RGBA, nullptr);
@@ -105,14 +115,20 @@ int main()
     for (int p = 0; p < size * size; ++p)
         for (int c = 0; c < 3; ++c)
             picture[p][c] += transmittance[p];
-    if (std::FILE *file = std::fopen("hello-peeling.ppm", "wb")) {
-        std::fprintf(file, "P6\n%d %d\n255\n", size, size);
-        for (int y = size; y-- > 0;)
-            for (int x = 0; x < size; ++x)
-                for (int c = 0; c < 3; ++c)
-                    std::fputc(static_cast<int>(255.0F * picture[y * size + x][c] + 0.5F), file);
-        std::fclose(file);
-    }
+    std::FILE *out = std::fopen(file, "wb");
+    if (!out)
+        return std::fprintf(stderr, "hello-peeling: cannot write %s: %s\n", file,
+                            std::strerror(errno)),
+               2;
+    std::fprintf(out, "P6\n%d %d\n255\n", size, size);
+    for (int y = size; y-- > 0;)
+        for (int x = 0; x < size; ++x)
+            for (int c = 0; c < 3; ++c)
+                std::fputc(static_cast<int>(255.0F * picture[y * size + x][c] + 0.5F), out);
+    if (std::fclose(out) != 0)
+        return std::fprintf(stderr, "hello-peeling: cannot write %s: %s\n", file,
+                            std::strerror(errno)),
+               2;
 
     // In the middle: red/2 + green/4 + blue/8 + white/8.
     const Pixel expected = {0.625F, 0.375F, 0.25F};
