@@ -174,14 +174,13 @@ kb::Status dump(const kb::Gl &gl, const kb::Mesh &mesh, const Options &options)
 
 kb::Status run(const Options &options)
 {
-    auto mesh = kb::load_mesh(options.mesh);
-    if (!mesh)
-        return mesh.error();
-    kb::fit_to_unit_sphere(*mesh);
+    const auto loaded = kb::load_mesh(options.mesh);
+    if (!loaded)
+        return loaded.error();
     auto context = kb::make_context("osmesa");
     if (!context)
         return context.error();
-    return dump((*context)->gl(), *mesh, options);
+    return dump((*context)->gl(), loaded->mesh, options);
 }
 
 } // namespace

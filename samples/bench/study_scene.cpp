@@ -138,10 +138,10 @@ Result<StudyScene> make_scene(const std::string &name, const std::filesystem::pa
     if (name != "dragon")
         return Error{fmt::format("no such scene: {}", name)};
     if (std::filesystem::exists(dragon)) {
-        auto mesh = load_mesh(dragon);
-        if (!mesh)
-            return mesh.error();
-        return make_mesh_scene(*std::move(mesh));
+        auto loaded = load_mesh(dragon);
+        if (!loaded)
+            return loaded.error();
+        return make_mesh_scene(std::move(loaded->mesh));
     }
     StudyScene scene = make_mesh_scene(make_knot(dragon_triangles));
     scene.note =

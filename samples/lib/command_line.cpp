@@ -2,6 +2,9 @@
 
 #include "command_line.hpp"
 
+#include "color.hpp"
+#include "version.hpp"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -19,8 +22,14 @@ static std::string program_name(const CLI::App &app)
 
 std::optional<int> parse_command_line(CLI::App &app, int argc, const char *const *argv)
 {
+    if (!app.get_option_no_throw("--version"))
+        app.set_version_flag("--version",
+                             fmt::format("{} (mesa-kbuffer) {}", program_name(app), version));
     try {
         app.parse(argc, argv);
+    } catch (const CLI::CallForVersion &version_line) {
+        fmt::print("{}\n", version_line.what());
+        return 0;
     } catch (const CLI::CallForHelp &) {
         fmt::print("{}", app.help());
         return 0;
@@ -108,19 +117,34 @@ void add_camera_options(CLI::App &app, OrbitCamera &camera)
                       "Of the shorter side of the picture");
 }
 
+CLI::Option *add_color_option(CLI::App &app, const std::string &name,
+                              const std::function<void(glm::vec3)> &set, const std::string &help)
+{
+    return app
+        .add_option_function<std::string>(
+            name,
+            [name, set](const std::string &text) {
+                const auto color = parse_color(text);
+                if (!color)
+                    throw CLI::ValidationError(name, color.error().message);
+                set(*color);
+            },
+            help)
+        ->type_name(color_forms);
+}
+
 CLI::Option *add_background_option(CLI::App &app, glm::vec3 &background)
 {
-    const auto set = [&background](const std::vector<float> &c) {
-        background = glm::vec3(c[0], c[1], c[2]);
-    };
-    return app
-        .add_option_function<std::vector<float>>("--background", set,
-                                                 "Red, green and blue from 0 to 1")
-        ->expected(3)
-        ->delimiter(',')
-        ->check([](const std::string &text) { return check_number(text, 0.0, 1.0); })
-        ->type_name("R,G,B")
+    return add_color_option(
+               app, "--background", [&background](glm::vec3 color) { background = color; },
+               "Color behind everything")
         ->default_str(fmt::format("{},{},{}", background.r, background.g, background.b));
+}
+
+CLI::Option *add_json_option(CLI::App &app, std::filesystem::path &file)
+{
+    return app.add_option("--json", file, "Write what was drawn and the times of each frame")
+        ->type_name("FILE.json");
 }
 
 CLI::Option *add_context_option(CLI::App &app, std::string &kind)

@@ -10,7 +10,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
+#include <functional>
 #include <optional>
+#include <string>
 
 namespace kb
 {
@@ -18,7 +21,8 @@ namespace kb
 inline constexpr int exit_lacking = 1;
 inline constexpr int exit_bad_input = 2;
 
-/// The exit status with which the program ends now, if it does: after --help or bad usage.
+/// The exit status with which the program ends now, if it does: after --help, --version or bad
+/// usage.
 std::optional<int> parse_command_line(CLI::App &app, int argc, const char *const *argv);
 
 /// Prints "program: message" on the standard error output; returns the status.
@@ -36,8 +40,15 @@ void add_turning_options(CLI::App &app, OrbitCamera &camera);
 /// Those, --distance and --field-of-view.
 void add_camera_options(CLI::App &app, OrbitCamera &camera);
 
-/// --background R,G,B
+/// An option whose value parse_color reads.
+CLI::Option *add_color_option(CLI::App &app, const std::string &name,
+                              const std::function<void(glm::vec3)> &set, const std::string &help);
+
+/// --background COLOR
 CLI::Option *add_background_option(CLI::App &app, glm::vec3 &background);
+
+/// --json FILE.json
+CLI::Option *add_json_option(CLI::App &app, std::filesystem::path &file);
 
 /// --context osmesa|egl|glfw
 CLI::Option *add_context_option(CLI::App &app, std::string &kind);

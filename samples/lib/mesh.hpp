@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Triangle meshes: a plain struct, files read by Assimp, generated models.
+// Triangle meshes: a plain struct, meshes of files, generated models.
 
 #pragma once
 
@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace kb
@@ -29,9 +30,20 @@ struct Mesh {
 /// of different lengths, a coordinate that is no finite number, an index without a vertex.
 Status check_mesh(const Mesh &mesh);
 
-/// Reads OBJ, PLY, STL or glTF 2.0. Polygons are cut into triangles, points and lines left out,
-/// missing normals made smooth. The mesh has passed check_mesh.
-Result<Mesh> load_mesh(const std::filesystem::path &path);
+/// A mesh of a file, and what to tell about it.
+struct LoadedMesh {
+    Mesh mesh;             ///< Fills the unit sphere. Has passed check_mesh.
+    std::string format;    ///< For people, for example "binary PLY".
+    std::string colors_of; ///< What the file gives colors to, for example "vertices"; else empty.
+    glm::dvec3 center;     ///< Of the file's mesh, in its units.
+    double radius;         ///< Of the sphere about it, in the file's units.
+    std::vector<std::string> notes; ///< What the file has and is left out, one line each.
+};
+
+/// Reads OBJ, PLY, STL or glTF 2.0, by the ending of the file's name. Polygons are cut into
+/// triangles, points and lines left out, missing normals computed, vertices without a triangle
+/// forgotten. Coordinates are rounded to floats when they are in the unit sphere.
+Result<LoadedMesh> load_mesh(const std::filesystem::path &path);
 
 /// Makes one vertex of those that are the same in all bits; triangles keep their order.
 void join_identical_vertices(Mesh &mesh);

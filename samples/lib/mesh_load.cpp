@@ -2,163 +2,166 @@
 
 #include "file.hpp"
 #include "mesh.hpp"
+#include "mesh_file.hpp"
+#include "smooth_normals.hpp"
+#include "text_fields.hpp"
 
-#include <assimp/Importer.hpp>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <span>
-#include <sstream>
+#include <limits>
+#include <new>
 
 namespace kb
 {
 
-/// What Assimp does not notice about PLY files. It would read the end of a header that is cut off
-/// forever, and take what is missing of a last line for zeros.
-static Status check_ply(std::ifstream &file)
+static Result<FileMesh> read_mesh(const std::filesystem::path &path)
 {
-    bool ascii = false;
-    bool last_is_list = false;
-    std::size_t expected = 0;
-    std::string line;
-    do {
-        if (!std::getline(file, line))
-            return Error{"its header has no end"};
-        std::istringstream words(line);
-        std::string keyword;
-        std::string name;
-        std::size_t count = 0;
-        words >> keyword >> name >> count;
-        if (keyword == "format")
-            ascii = name == "ascii";
-        else if (keyword == "element")
-            expected += count;
-        else if (keyword == "property")
-            last_is_list = name == "list";
-    } while (!line.starts_with("end_header"));
-    if (!ascii)
-        return ok;
-
-    std::size_t found = 0;
-    std::string last;
-    while (std::getline(file, line)) {
-        if (line.find_first_not_of(" \t\r") != std::string::npos) {
-            ++found;
-            last.swap(line);
-        }
-    }
-    std::istringstream words(last);
-    std::ptrdiff_t list_size = 0;
-    if (last_is_list && words >> list_size)
-        found -= std::distance(std::istream_iterator<std::string>(words), {}) < list_size;
-    if (found < expected)
-        return Error{"it ends early"};
-    return ok;
-}
-
-static Status check_file(const std::filesystem::path &path)
-{
-    auto file = open_file(path);
-    if (!file)
-        return file.error();
-    std::string line;
-    if (!std::getline(*file, line))
+    const auto content = read_file(path);
+    if (!content)
+        return content.error();
+    if (trim(*content).empty())
         return Error{"it is empty"};
-    return line.starts_with("ply") ? check_ply(*file) : Status(ok);
+    const std::string ending = to_lower(path.extension().string());
+    if (ending == ".ply")
+        return read_ply(*content);
+    if (ending == ".stl")
+        return read_stl(*content);
+    if (ending == ".obj")
+        return read_obj(*content, path.parent_path());
+    if (ending == ".gltf" || ending == ".glb")
+        return read_gltf(*content, path.parent_path());
+    return Error{"its name ends in none of .obj, .ply, .stl, .gltf and .glb"};
 }
 
-/// What Assimp's own processing would trip over: it trusts the faces of the file.
-static Status check_raw_mesh(const aiMesh &mesh)
+static bool is_finite(const glm::dvec3 &v)
 {
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-        const aiVector3D &p = mesh.mVertices[i];
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Forgets vertices that no triangle has: where they are, and what, is nobody's concern.
+static Status keep_used_vertices(FileMesh &mesh)
+{
+    constexpr auto unused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> new_index(mesh.positions.size(), unused);
+    for (const std::uint32_t index : mesh.indices)
+        new_index[index] = 0;
+    std::uint32_t next = 0;
+    for (std::size_t i = 0; i < new_index.size(); ++i) {
+        if (new_index[i] == unused)
+            continue;
+        if (!is_finite(mesh.positions[i]))
             return Error{fmt::format("vertex {} is not finite", i)};
+        new_index[i] = next;
+        mesh.positions[next] = mesh.positions[i];
+        if (!mesh.normals.empty())
+            mesh.normals[next] = mesh.normals[i];
+        if (!mesh.colors.empty())
+            mesh.colors[next] = mesh.colors[i];
+        ++next;
     }
-    if (mesh.mNumFaces == 0)
-        return Error{"it has no triangles"};
-    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
-        const aiFace &face = mesh.mFaces[i];
-        if (face.mNumIndices == 0)
-            return Error{fmt::format("face {} has no vertices", i)};
-        for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
-            if (index >= mesh.mNumVertices)
-                return Error{fmt::format("face {} has index {}, but there are {} vertices", i,
-                                         index, mesh.mNumVertices)};
+    mesh.positions.resize(next);
+    mesh.normals.resize(next);
+    if (!mesh.colors.empty())
+        mesh.colors.resize(next);
+    for (std::uint32_t &index : mesh.indices)
+        index = new_index[index];
+    return ok;
+}
+
+/// Colors are from 0 to 1, up to rounding.
+static Status check_colors(std::vector<glm::vec4> &colors)
+{
+    constexpr float slack = 1e-3F;
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+        for (int c = 0; c < 4; ++c) {
+            if (!(colors[i][c] >= -slack && colors[i][c] <= 1.0F + slack))
+                return Error{fmt::format("a vertex has the color {}, {}, {}, {}, but colors are "
+                                         "from 0 to 1",
+                                         colors[i].r, colors[i].g, colors[i].b, colors[i].a)};
         }
+        colors[i] = glm::clamp(colors[i], 0.0F, 1.0F);
     }
     return ok;
 }
 
-static glm::vec3 to_vec3(const aiVector3D &v)
+struct Sphere {
+    glm::dvec3 center;
+    double radius;
+};
+
+/// Moves and scales positions so that their sphere is the unit sphere; the sphere that they had.
+/// An error if they are all in one place.
+static Result<Sphere> fit(std::vector<glm::dvec3> &positions)
 {
-    return {v.x, v.y, v.z};
+    glm::dvec3 low = positions[0];
+    glm::dvec3 high = positions[0];
+    for (const glm::dvec3 &p : positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::dvec3 center = 0.5 * low + 0.5 * high;
+    // To some size near 1 first, where squares are neither too small nor too large for a double.
+    const glm::dvec3 halves = glm::max(high - center, center - low);
+    const double half = std::max({halves.x, halves.y, halves.z});
+    if (!(half > 0.0))
+        return Error{"its vertices are all in one place"};
+    double radius = 0.0;
+    for (glm::dvec3 &p : positions) {
+        p = (p - center) / half;
+        radius = std::max(radius, glm::length(p));
+    }
+    for (glm::dvec3 &p : positions)
+        p /= radius;
+    return Sphere{center, half * radius};
 }
 
-static void append(Mesh &mesh, const aiMesh &part)
+static Result<LoadedMesh> make_mesh(FileMesh &&file)
 {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (unsigned i = 0; i < part.mNumVertices; ++i) {
-        mesh.positions.push_back(to_vec3(part.mVertices[i]));
-        // A vertex of degenerate triangles alone has no direction: any will do.
-        const aiVector3D normal = part.HasNormals() ? part.mNormals[i] : aiVector3D(0, 0, 1);
-        mesh.normals.push_back(std::isfinite(normal.SquareLength()) ? to_vec3(normal)
-                                                                    : glm::vec3(0, 0, 1));
-    }
-    if (part.HasVertexColors(0)) {
-        mesh.colors.resize(first, glm::vec4(1.0F));
-        for (unsigned i = 0; i < part.mNumVertices; ++i) {
-            const aiColor4D &c = part.mColors[0][i];
-            mesh.colors.emplace_back(c.r, c.g, c.b, c.a);
-        }
-    } else if (!mesh.colors.empty()) {
-        mesh.colors.resize(mesh.positions.size(), glm::vec4(1.0F));
-    }
-    for (unsigned i = 0; i < part.mNumFaces; ++i) {
-        const aiFace &face = part.mFaces[i];
-        if (face.mNumIndices == 3)
-            for (const unsigned index : std::span(face.mIndices, 3))
-                mesh.indices.push_back(first + index);
-    }
+    if (file.indices.empty())
+        return Error{"it has no triangles"};
+    if (auto kept = keep_used_vertices(file); !kept)
+        return kept.error();
+    if (auto checked = check_colors(file.colors); !checked)
+        return checked.error();
+    const auto sphere = fit(file.positions);
+    if (!sphere)
+        return sphere.error();
+    complete_normals(file.positions, file.indices, file.normals);
+
+    Mesh mesh;
+    for (const glm::dvec3 &p : file.positions)
+        mesh.positions.emplace_back(p);
+    mesh.normals = std::move(file.normals);
+    mesh.colors = std::move(file.colors);
+    mesh.indices = std::move(file.indices);
+    if (auto checked = check_mesh(mesh); !checked)
+        return checked.error();
+    join_identical_vertices(mesh);
+    return LoadedMesh{std::move(mesh), std::move(file.format), std::move(file.colors_of),
+                      sphere->center,  sphere->radius,         std::move(file.notes)};
 }
 
-Result<Mesh> load_mesh(const std::filesystem::path &path)
+Result<LoadedMesh> load_mesh(const std::filesystem::path &path)
 {
     const auto fail = [&path](const std::string &reason) {
         std::string line = reason.substr(0, reason.find_first_of("\r\n"));
         return Error{fmt::format("cannot read the mesh {}: {}", path.string(), line)};
     };
-
-    if (auto checked = check_file(path); !checked)
-        return fail(checked.error().message);
-    Assimp::Importer importer;
-    const aiScene *scene = importer.ReadFile(path.string(), 0);
-    if (!scene)
-        return fail(importer.GetErrorString());
-    for (const aiMesh *part : std::span(scene->mMeshes, scene->mNumMeshes)) {
-        if (auto checked = check_raw_mesh(*part); !checked)
-            return fail(checked.error().message);
+    try {
+        auto file = read_mesh(path);
+        if (!file)
+            return fail(file.error().message);
+        auto mesh = make_mesh(*std::move(file));
+        if (!mesh)
+            return fail(mesh.error().message);
+        return mesh;
+    } catch (const std::bad_alloc &) {
+        return fail("there is not enough memory for it");
     }
-
-    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
-                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    scene =
-        importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
-                                     aiProcess_PreTransformVertices | aiProcess_GenSmoothNormals);
-    if (!scene)
-        return fail("it has no triangles");
-
-    Mesh mesh;
-    for (const aiMesh *part : std::span(scene->mMeshes, scene->mNumMeshes))
-        append(mesh, *part);
-    if (auto checked = check_mesh(mesh); !checked)
-        return fail(checked.error().message);
-    join_identical_vertices(mesh); // Not by Assimp, which forgets to look at colors.
-    return mesh;
 }
 
 } // namespace kb

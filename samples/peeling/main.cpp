@@ -13,11 +13,13 @@
 #include "context.hpp"
 #include "kbuffer.hpp"
 #include "layer_files.hpp"
+#include "mesh_report.hpp"
 #include "options.hpp"
 #include "scene.hpp"
 #include "timing.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <new>
@@ -157,7 +159,28 @@ struct Failure {
     int status;
 };
 
-std::optional<Failure> run(kb::PeelingOptions options, const kb::Mesh &mesh,
+/// What was drawn, for programs.
+nlohmann::json make_report(const kb::PeelingOptions &options, const kb::SceneMesh &mesh,
+                           const Renderer &renderer, const kb::Accumulation::Count &count,
+                           const std::vector<double> &times)
+{
+    nlohmann::json report = kb::mesh_report(mesh, options.scene);
+    report.update({{"size", {options.layers.size.width, options.layers.size.height}},
+                   {"k", options.layers.count},
+                   {"all", options.all},
+                   {"func", kb::word_of(options.layers.func)},
+                   {"depth_format", kb::word_of(options.layers.depth_format)},
+                   {"color_format", kb::word_of(options.layers.color_formats.front())},
+                   {"samples", options.layers.samples},
+                   {"passes", renderer.passes()},
+                   {"layers", count.deepest},
+                   {"fragments", count.fragments},
+                   {"bytes_per_pixel", renderer.peeling().bytes_per_pixel()},
+                   {"ms", times}});
+    return report;
+}
+
+std::optional<Failure> run(kb::PeelingOptions options, const kb::SceneMesh &mesh,
                            const kb::LayerFiles &files)
 {
     const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
@@ -169,12 +192,13 @@ std::optional<Failure> run(kb::PeelingOptions options, const kb::Mesh &mesh,
     if (!context)
         return lacking(context.error());
     const kb::Gl &gl = (*context)->gl();
-    auto renderer = make_renderer(gl, options, mesh);
+    auto renderer = make_renderer(gl, options, mesh.mesh);
     if (!renderer)
         return lacking(renderer.error());
     if (auto started = files.start(); !started)
         return unwritten(started.error());
 
+    fmt::print("{}\n", kb::describe(mesh, options.scene));
     kb::Status written = kb::ok;
     const auto watch = [&](const Renderer::Pass &pass) {
         const int first = renderer->peeling().first_layer();
@@ -201,14 +225,21 @@ std::optional<Failure> run(kb::PeelingOptions options, const kb::Mesh &mesh,
     if (!written)
         return unwritten(written.error());
 
-    const auto [fragments, deepest] = renderer->accumulation().count();
+    const kb::Accumulation::Count count = renderer->accumulation().count();
+    if (written =
+            kb::write_report(options.json, make_report(options, mesh, *renderer, count, times));
+        !written)
+        return unwritten(written.error());
+    kb::print_notes("peeling", mesh);
+    kb::print_emptiness("peeling", picture, background,
+                        kb::alpha_range(mesh.mesh, options.scene.alpha));
     const kb::Spread spread = kb::spread_of(times);
     fmt::print("peeling k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), {} geometry "
                "pass{}, {} triangles, {} layers, {} fragments, {} bytes per pixel\n",
                options.layers.count, options.layers.size.width, options.layers.size.height,
                spread.median, spread.p5, spread.p95, times.size(), renderer->passes(),
-               renderer->passes() == 1 ? "" : "es", renderer->triangle_count(), deepest, fragments,
-               renderer->peeling().bytes_per_pixel());
+               renderer->passes() == 1 ? "" : "es", renderer->triangle_count(), count.deepest,
+               count.fragments, renderer->peeling().bytes_per_pixel());
 
     while ((*context)->present(framebuffer, options.layers.size, options.scene.camera)) {
         if (auto drawn = renderer->draw_frame(options.scene.camera); !drawn)
@@ -235,7 +266,8 @@ int main(int argc, char **argv)
     if (!mesh)
         return kb::fail(app, mesh.error(), kb::exit_bad_input);
     const kb::LayerFiles files(options.directory, options.floats);
-    for (const auto &writable : {files.check(), kb::check_writable(options.outputs)}) {
+    for (const auto &writable :
+         {files.check(), kb::check_writable(options.outputs), kb::check_writable(options.json)}) {
         if (!writable)
             return kb::fail(app, writable.error(), kb::exit_bad_input);
     }

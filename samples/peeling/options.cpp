@@ -8,10 +8,28 @@
 namespace kb
 {
 
+using Words = std::map<std::string, GLenum>;
+
+static const Words funcs{
+    {"less", GL_LESS}, {"lequal", GL_LEQUAL}, {"greater", GL_GREATER}, {"gequal", GL_GEQUAL}};
+static const Words depth_formats{
+    {"32f", GL_DEPTH_COMPONENT32F}, {"24", GL_DEPTH_COMPONENT24}, {"16", GL_DEPTH_COMPONENT16}};
+static const Words color_formats{{"8", GL_RGBA8}, {"16f", GL_RGBA16F}, {"32f", GL_RGBA32F}};
+
+std::string word_of(GLenum value)
+{
+    for (const Words &words : {funcs, depth_formats, color_formats}) {
+        for (const auto &[word, meaning] : words) {
+            if (meaning == value)
+                return word;
+        }
+    }
+    return "";
+}
+
 /// An option whose words stand for GL values.
-static void add_words(CLI::App &app, const char *name, GLenum &value,
-                      const std::map<std::string, GLenum> &words, const char *default_word,
-                      const char *help)
+static void add_words(CLI::App &app, const char *name, GLenum &value, const Words &words,
+                      const char *default_word, const char *help)
 {
     std::vector<std::string> names;
     for (const auto &word : words)
@@ -33,18 +51,12 @@ void declare_options(CLI::App &app, PeelingOptions &options)
     app.add_flag("--all", options.all,
                  "Draw passes until there is no further layer: an A-buffer in the memory of k");
     add_words(
-        app, "--func", options.layers.func,
-        {{"less", GL_LESS}, {"lequal", GL_LEQUAL}, {"greater", GL_GREATER}, {"gequal", GL_GEQUAL}},
-        "less",
+        app, "--func", options.layers.func, funcs, "less",
         "less, lequal (nearest first), greater or gequal (farthest first); of equal depths less "
         "and greater keep the order of drawing, the others reverse it");
-    add_words(app, "--depth-format", options.layers.depth_format,
-              {{"32f", GL_DEPTH_COMPONENT32F},
-               {"24", GL_DEPTH_COMPONENT24},
-               {"16", GL_DEPTH_COMPONENT16}},
-              "32f", "Depths are compared as stored in 32f, 24 or 16 bits");
-    add_words(app, "--color-format", options.layers.color_formats.front(),
-              {{"8", GL_RGBA8}, {"16f", GL_RGBA16F}, {"32f", GL_RGBA32F}}, "8",
+    add_words(app, "--depth-format", options.layers.depth_format, depth_formats, "32f",
+              "Depths are compared as stored in 32f, 24 or 16 bits");
+    add_words(app, "--color-format", options.layers.color_formats.front(), color_formats, "8",
               "RGBA colors of 8, 16f or 32f bits a channel");
     app.add_option("--samples", options.layers.samples, "0, or 4 samples a pixel")
         ->check(CLI::IsMember({0, 4}))
@@ -61,6 +73,7 @@ void declare_options(CLI::App &app, PeelingOptions &options)
         ->type_name("DIR");
     app.add_flag("--floats", options.floats,
                  "Write picture, layers and their depths as PFM files into DIR, too");
+    add_json_option(app, options.json);
 }
 
 Status check_options(const PeelingOptions &options)

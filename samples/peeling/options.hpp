@@ -7,6 +7,7 @@
 #include "output.hpp"
 #include "scene_options.hpp"
 
+#include <filesystem>
 #include <string>
 
 namespace kb
@@ -21,9 +22,13 @@ struct PeelingOptions {
     OutputPaths outputs;   ///< Only the picture.
     std::string directory; ///< For composite and layers; empty: none.
     bool floats = false;
+    std::filesystem::path json;
 };
 
 void declare_options(CLI::App &app, PeelingOptions &options);
+
+/// The word of --func, --depth-format or --color-format for a GL value.
+std::string word_of(GLenum value);
 
 /// What no single option can know.
 Status check_options(const PeelingOptions &options);

@@ -10,12 +10,14 @@
 #include "command_line.hpp"
 #include "context.hpp"
 #include "kbuffer.hpp"
+#include "mesh_report.hpp"
 #include "method.hpp"
 #include "output.hpp"
 #include "scene_options.hpp"
 #include "timing.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <new>
@@ -32,12 +34,15 @@ struct Options {
     int repeat = 1;
     kb::Size size;
     kb::OutputPaths outputs;
+    std::filesystem::path json;
 };
 
 void declare_options(CLI::App &app, Options &options)
 {
-    kb::add_scene_options(app, options.scene,
-                          "Alpha of all fragments, 0 to 1, instead of the mesh's (rgbz: 0.4)");
+    kb::add_scene_options(
+        app, options.scene,
+        "Alpha of all fragments, 0 to 1, instead of the mesh's (rgbz, of a mesh with "
+        "several: 0.4)");
     app.add_option("--method", options.method,
                    "kbuffer (one pass, a k-buffer program), peeling (one pass, "
                    "GL_DEPTH_PEELING), classic-peeling (k passes) or unsorted (wrong, one pass)")
@@ -64,6 +69,16 @@ void declare_options(CLI::App &app, Options &options)
         ->type_name("FILE.pfm");
     app.add_option("--layers-out", options.outputs.layers, "Write color and depth of each layer")
         ->type_name("DIR");
+    kb::add_json_option(app, options.json);
+}
+
+/// RGBZ keeps no alpha: all fragments have the one that the resolve pass uses.
+void settle_alpha(Options &options, kb::EntryLayout layout, const kb::Mesh &mesh)
+{
+    if (layout != kb::EntryLayout::rgbz || options.scene.alpha)
+        return;
+    const auto [low, high] = kb::alpha_range(mesh, std::nullopt);
+    options.scene.alpha = low == high ? low : kb::MethodOptions{}.alpha;
 }
 
 kb::Result<std::unique_ptr<kb::Method>> make_method(const kb::Gl &gl, const Options &options,
@@ -91,7 +106,7 @@ struct Failure {
     int status;
 };
 
-std::optional<Failure> run(Options options, const kb::Mesh &mesh, kb::EntryLayout layout)
+std::optional<Failure> run(Options options, const kb::SceneMesh &mesh, kb::EntryLayout layout)
 {
     const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
 
@@ -103,10 +118,7 @@ std::optional<Failure> run(Options options, const kb::Mesh &mesh, kb::EntryLayou
     if (!method)
         return lacking(method.error());
 
-    // RGBZ keeps no alpha: all fragments must have the one that the resolve pass uses.
-    const bool rgbz = layout == kb::EntryLayout::rgbz;
-    const kb::Scene scene(gl, mesh,
-                          rgbz ? options.scene.alpha.value_or(0.4F) : options.scene.alpha);
+    const kb::Scene scene(gl, mesh.mesh, options.scene.alpha);
     const kb::Texture picture =
         kb::make_texture_2d(gl, GL_RGBA32F, options.size.width, options.size.height);
     const kb::Framebuffer framebuffer(gl);
@@ -131,6 +143,21 @@ std::optional<Failure> run(Options options, const kb::Mesh &mesh, kb::EntryLayou
     if (auto written = kb::write_outputs(options.outputs, image, layers); !written)
         return Failure{written.error(), kb::exit_bad_input};
 
+    nlohmann::json report = kb::mesh_report(mesh, options.scene);
+    report.update({{"size", {options.size.width, options.size.height}},
+                   {"method", options.method},
+                   {"k", options.k},
+                   {"layout", options.layout},
+                   {"passes", (*method)->geometry_passes()},
+                   {"bytes_per_pixel", (*method)->bytes_per_pixel()},
+                   {"ms", times}});
+    if (auto written = kb::write_report(options.json, report); !written)
+        return Failure{written.error(), kb::exit_bad_input};
+
+    kb::print_notes("transparency", mesh);
+    kb::print_emptiness("transparency", image, kb::MethodOptions{}.background,
+                        kb::alpha_range(mesh.mesh, options.scene.alpha));
+    fmt::print("{}\n", kb::describe(mesh, options.scene));
     const kb::Spread spread = kb::spread_of(times);
     fmt::print("{} k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), {} geometry "
                "pass{}, {} triangles, {} bytes per pixel\n",
@@ -166,8 +193,12 @@ int main(int argc, char **argv)
     const auto mesh = kb::make_mesh(options.scene);
     if (!mesh)
         return kb::fail(app, mesh.error(), kb::exit_bad_input);
-    if (auto writable = kb::check_writable(options.outputs); !writable)
-        return kb::fail(app, writable.error(), kb::exit_bad_input);
+    for (const auto &writable :
+         {kb::check_writable(options.outputs), kb::check_writable(options.json)}) {
+        if (!writable)
+            return kb::fail(app, writable.error(), kb::exit_bad_input);
+    }
+    settle_alpha(options, *layout, mesh->mesh);
 
     try {
         if (const auto failure = run(options, *mesh, *layout))

@@ -47,7 +47,7 @@ vec4 shade()
 )";
 
 Scene::Scene(const Gl &gl, const Mesh &mesh, std::optional<float> alpha)
-    : gl_(&gl), buffers_(gl, mesh, glm::vec4(0.55F, 0.75F, 0.95F, 0.4F)), alpha_(alpha)
+    : gl_(&gl), buffers_(gl, mesh, default_color), alpha_(alpha)
 {
 }
 

@@ -15,11 +15,14 @@
 namespace kb
 {
 
+/// Of a mesh without colors: a light blue.
+inline constexpr glm::vec4 default_color(0.55F, 0.75F, 0.95F, 0.4F);
+
 class Scene
 {
 public:
     /// `alpha` replaces the alpha of all vertices if there is one. A mesh without colors is drawn
-    /// in a light blue.
+    /// in the default color.
     Scene(const Gl &gl, const Mesh &mesh, std::optional<float> alpha);
 
     /// A program with this scene's shading. `discard` is GLSL that runs first, in main of the
