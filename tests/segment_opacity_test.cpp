@@ -54,7 +54,7 @@ TEST(SegmentOpacity, OfNoDepthIsNothingToTheBit)
 TEST(SegmentOpacity, OfTheProgramIsThatOfTheFunction)
 {
     const ArbInterpreter program("!!ARBfp1.0\nOPTION MESA_kbuffer_program;\n"
-                                 "TEMP depth;\nMOV depth.x, fragment.color.x;\n" +
+                                 "TEMP depth, opacity;\nMOV depth.x, fragment.color.x;\n" +
                                  kb::make_opacity_program() +
                                  "MOV result.kbuffer[0].xy, opacity;\nEND\n");
     for (float half = 1e-6F; half < 2e9F; half *= 1.5F) {

@@ -30,11 +30,11 @@ void main()
 }
 )";
 
-/// Narrow peaks of a transfer function want many texels.
-constexpr TableSize table_size{2049, 129};
 /// A prime number: cuts of a cell over all scalars do not fall onto steps at 1/2, 1/4, 1/10, at
 /// which the table is not exact.
 constexpr int cuts = 31;
+/// Narrow peaks of a transfer function want many texels.
+constexpr TableSize exact_table{4097, 65, 1.0 / cuts};
 
 /// Texture units of the shaders below.
 enum Unit { fragments_unit, depths_unit, color_unit, front_unit, table_unit };
@@ -81,7 +81,7 @@ public:
                   Program add, Program finish)
         : gl_(gl), size_(settings.size), peeling_(std::move(peeling)), faces_(std::move(faces)),
           add_(std::move(add)), finish_(std::move(finish)),
-          table_(gl, PreintegratedTable(settings.transfer, table_size)),
+          table_(gl, PreintegratedTable(settings.transfer, exact_table)),
           sums_({Sum(gl, size_), Sum(gl, size_)}),
           picture_(make_texture_2d(gl, GL_RGBA32F, size_.width, size_.height)), framebuffer_(gl),
           empty_(gl)
@@ -229,7 +229,7 @@ Result<std::unique_ptr<VolumeRenderer>> make_exact_renderer(const Gl &gl,
         return faces.error();
     auto add = Program::make(gl, full_screen_vertex_shader,
                              fmt::format("#version 330\n#define LAYERS {}\n", settings.k) +
-                                 SegmentTextures::shader(table_size) + make_volume_shader(cuts) +
+                                 SegmentTextures::shader(exact_table) + make_volume_shader(cuts) +
                                  add_shader);
     if (!add)
         return add.error();

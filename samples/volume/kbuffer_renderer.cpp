@@ -14,14 +14,13 @@
 
 #include <fmt/format.h>
 
+#include <variant>
+
 namespace kb
 {
 
 namespace
 {
-
-/// Fine enough in the mean for the nearest texel to do: scalars are off by 1/4096 of their range.
-constexpr TableSize table_size{2049, 129};
 
 constexpr int table_unit = 8; ///< Of the flush: behind the attachments of the k-buffer.
 
@@ -81,7 +80,7 @@ void order(inout vec2 a, inout vec2 b)
 )";
 
 /// Composites what still waits.
-std::string make_flush_shader(const KBuffer &kbuffer, int k)
+std::string make_flush_shader(const KBuffer &kbuffer, int k, SegmentLookup lookup)
 {
     const auto fetch = [&kbuffer](int entry) {
         return fmt::format("texelFetch(attachment{}, ivec3(pixel, {}), 0)",
@@ -92,22 +91,27 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k)
         text += fmt::format("uniform sampler2DArray attachment{};\n", a);
     text += "uniform vec3 background;\n"
             "layout(location = 0) out vec4 result;\n";
-    text += PackedSegmentTexture::shader(table_size);
-    text += make_volume_shader(0);
+    const TableSize size = table_size(lookup);
+    text +=
+        lookup.interpolates() ? SegmentTextures::shader(size) : PackedSegmentTexture::shader(size);
+    text += make_volume_shader(lookup.parts);
     text += order_function;
     text += fmt::format("ivec2 pixel = ivec2(gl_FragCoord.xy);\n"
                         "void add_last()\n"
                         "{{\n"
-                        "    vec4 last = {};\n"
-                        "    vec3 change;\n"
-                        "    vec4 optics = unpack(last.xy, last.w, change);\n"
-                        "    add_optics(optics, change, last.z);\n"
-                        "}}\n"
+                        "    vec4 last = {};\n",
+                        fetch(2));
+    text += lookup.interpolates()
+                ? fmt::format("    add_cut(last.x, last.y, {:.1f} * last.z);\n", 2.0 * lookup.parts)
+                : "    vec3 change;\n"
+                  "    vec4 optics = unpack(last.xy, last.w, change);\n"
+                  "    add_optics(optics, change, last.z);\n";
+    text += fmt::format("}}\n"
                         "void main()\n"
                         "{{\n"
                         "    start({}, {});\n"
                         "    vec2 waiting[{}];\n",
-                        fetch(2), fetch(0), fetch(1), 2 * waiting_entries(k));
+                        fetch(0), fetch(1), 2 * waiting_entries(k));
     text += "    vec4 pair;\n";
     for (int i = 0; i < waiting_entries(k); ++i)
         text += fmt::format("    pair = {}; waiting[{}] = pair.xy; waiting[{}] = pair.zw;\n",
@@ -118,22 +122,37 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k)
     return text;
 }
 
+/// The textures that a lookup wants.
+using Textures = std::variant<PackedSegmentTexture, SegmentTextures>;
+
+Textures make_textures(const Gl &gl, const VolumeSettings &settings)
+{
+    const PreintegratedTable table(settings.transfer, table_size(settings.lookup));
+    if (settings.lookup.interpolates())
+        return SegmentTextures(gl, table);
+    return PackedSegmentTexture(gl, table);
+}
+
 class KBufferRenderer final : public VolumeRenderer
 {
 public:
     KBufferRenderer(const Gl &gl, const VolumeSettings &settings, KBuffer kbuffer, Program rays,
-                    ArbProgram clear, Program faces, ArbProgram program, Program flush,
-                    const PreintegratedTable &table)
+                    ArbProgram clear, Program faces, ArbProgram program, Program flush)
         : gl_(gl), size_(settings.size), kbuffer_(std::move(kbuffer)), rays_(std::move(rays)),
           clear_(std::move(clear)), faces_(std::move(faces)), program_(std::move(program)),
-          flush_(std::move(flush)), table_(gl, table),
+          flush_(std::move(flush)), table_(make_textures(gl, settings)),
           picture_(make_texture_2d(gl, GL_RGBA32F, size_.width, size_.height)), framebuffer_(gl),
           empty_(gl)
     {
         flush_.use();
         for (int a = 0; a < kbuffer_.attachments(); ++a)
             gl.Uniform1i(flush_.uniform(fmt::format("attachment{}", a).c_str()), a);
-        gl.Uniform1i(flush_.uniform("segments"), table_unit);
+        if (settings.lookup.interpolates()) {
+            gl.Uniform1i(flush_.uniform("thin"), table_unit);
+            gl.Uniform1i(flush_.uniform("fading"), table_unit + 1);
+        } else {
+            gl.Uniform1i(flush_.uniform("segments"), table_unit);
+        }
         gl.Uniform3f(flush_.uniform("background"), settings.background.r, settings.background.g,
                      settings.background.b);
         gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
@@ -150,7 +169,7 @@ public:
         rays_.use();
         set_rays(gl_, rays_, faces.camera(), size_);
         draw_full_screen(gl_, empty_);
-        table_.bind(0);
+        bind_table(0);
         program_.bind();
         draw_faces(gl_, faces_, faces, size_);
         gl_.Disable(GL_KBUFFER_PROGRAM_MESA);
@@ -163,12 +182,17 @@ public:
     int bytes_per_pixel() const override { return 16 * kbuffer_.attachments() * kbuffer_.layers(); }
 
 private:
+    void bind_table(int unit) const
+    {
+        std::visit([unit](const auto &textures) { textures.bind(unit); }, table_);
+    }
+
     void flush() const
     {
         gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
         gl_.Viewport(0, 0, size_.width, size_.height);
         kbuffer_.bind_textures();
-        table_.bind(table_unit);
+        bind_table(table_unit);
         flush_.use();
         draw_full_screen(gl_, empty_);
     }
@@ -181,7 +205,7 @@ private:
     Program faces_;
     ArbProgram program_;
     Program flush_;
-    PackedSegmentTexture table_;
+    Textures table_;
     Texture picture_;
     Framebuffer framebuffer_;
     VertexArray empty_;
@@ -205,18 +229,17 @@ Result<std::unique_ptr<VolumeRenderer>> make_kbuffer_renderer(const Gl &gl,
     auto faces = make_face_program(gl, face_shader);
     if (!faces)
         return faces.error();
-    auto program =
-        ArbProgram::make(gl, GL_KBUFFER_PROGRAM_MESA, make_volume_program(settings.k, table_size));
+    auto program = ArbProgram::make(gl, GL_KBUFFER_PROGRAM_MESA,
+                                    make_volume_program(settings.k, settings.lookup));
     if (!program)
         return program.error();
-    auto flush =
-        Program::make(gl, full_screen_vertex_shader, make_flush_shader(*kbuffer, settings.k));
+    auto flush = Program::make(gl, full_screen_vertex_shader,
+                               make_flush_shader(*kbuffer, settings.k, settings.lookup));
     if (!flush)
         return flush.error();
-    const PreintegratedTable table(settings.transfer, table_size);
     auto renderer = std::make_unique<KBufferRenderer>(
         gl, settings, std::move(*kbuffer), std::move(*rays), std::move(*clear), std::move(*faces),
-        std::move(*program), std::move(*flush), table);
+        std::move(*program), std::move(*flush));
     if (auto complete = check_framebuffer(gl); !complete)
         return complete.error();
     return std::unique_ptr<VolumeRenderer>(std::move(renderer));

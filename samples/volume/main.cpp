@@ -13,6 +13,7 @@
 #include "context.hpp"
 #include "kbuffer.hpp"
 #include "output.hpp"
+#include "segment_choice.hpp"
 #include "subdivide.hpp"
 #include "timing.hpp"
 #include "volume_disorder.hpp"
@@ -35,31 +36,46 @@ struct Failure {
 };
 
 kb::Result<std::unique_ptr<kb::VolumeRenderer>>
-make_renderer(const kb::Gl &gl, const kb::VolumeOptions &options, const kb::VolumeScene &scene)
+make_renderer(const kb::Gl &gl, const kb::VolumeOptions &options, const kb::VolumeScene &scene,
+              const kb::CellClusters *clusters, kb::VolumeReport &report)
 {
-    const kb::VolumeSettings settings{options.size, options.k, scene.transfer, options.background};
+    kb::VolumeSettings settings{options.size, options.k, scene.transfer, options.background,
+                                kb::SegmentLookup()};
     if (options.exact)
         return kb::make_exact_renderer(gl, settings);
     if (auto supported = kb::require_kbuffer_program(gl); !supported)
         return supported.error();
+    report.segments =
+        kb::choose_lookup(scene.grid, scene.faces.scalars, scene.range, scene.transfer, clusters);
+    settings.lookup = report.segments->lookup;
     return kb::make_kbuffer_renderer(gl, settings);
 }
 
+/// The cells that are drawn as one, unless all faces are wanted.
+std::optional<kb::CellClusters> join_cells(const kb::Gl &gl, const kb::VolumeOptions &options,
+                                           const kb::VolumeScene &scene, kb::VolumeReport &report)
+{
+    std::optional<kb::CellClusters> clusters;
+    if (options.all_faces)
+        return clusters;
+    report.cluster_time = kb::milliseconds(gl, [&] {
+        clusters = kb::cluster_cells(scene.grid, scene.faces, scene.range,
+                                     kb::ColorTolerance(scene.transfer, options.tolerance));
+    });
+    report.clusters = clusters->count;
+    return clusters;
+}
+
 /// What is drawn of the faces, in pieces if that is wanted.
-kb::FaceMesh choose_faces(const kb::Gl &gl, const kb::VolumeOptions &options,
-                          const kb::VolumeScene &scene, kb::VolumeReport &report)
+kb::FaceMesh choose_faces(const kb::VolumeOptions &options, const kb::VolumeScene &scene,
+                          const kb::CellClusters *clusters, kb::VolumeReport &report)
 {
     kb::FaceMesh faces = scene.faces;
-    if (!options.all_faces)
-        report.cluster_time = kb::milliseconds(gl, [&] {
-            const kb::CellClusters clusters =
-                kb::cluster_cells(scene.grid, scene.faces, scene.range,
-                                  kb::ColorTolerance(scene.transfer, options.tolerance));
-            faces = kb::mark_inner_faces(
-                scene.faces, [&clusters](auto a, auto b) { return clusters.join(a, b); });
-            report.clusters = clusters.count;
-            report.inner_faces = faces.inner_count;
-        });
+    if (clusters) {
+        faces = kb::mark_inner_faces(scene.faces,
+                                     [clusters](auto a, auto b) { return clusters->join(a, b); });
+        report.inner_faces = faces.inner_count;
+    }
     return options.budget > 1.0 ? kb::subdivide(faces, options.budget, options.split_first) : faces;
 }
 
@@ -71,11 +87,14 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
     if (!context)
         return lacking(context.error());
     const kb::Gl &gl = (*context)->gl();
-    auto renderer = make_renderer(gl, options, scene);
+    kb::VolumeReport report;
+    const auto joined = join_cells(gl, options, scene, report);
+    const kb::CellClusters *clusters = joined ? &*joined : nullptr;
+    auto renderer = make_renderer(gl, options, scene, clusters, report);
     if (!renderer)
         return lacking(renderer.error());
-    kb::VolumeReport report;
-    kb::SortedFaces faces(gl, choose_faces(gl, options, scene, report), scene.range, options.order);
+    kb::SortedFaces faces(gl, choose_faces(options, scene, clusters, report), scene.range,
+                          options.order);
 
     const auto draw = [&]() -> kb::Status {
         kb::Status drawn = kb::ok;

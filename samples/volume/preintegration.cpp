@@ -21,9 +21,15 @@ double fade(double depth)
     return 1.0 + 2.0 / std::expm1(depth) - 2.0 / depth;
 }
 
+/// From the place of the largest difference to 1.
+static double place_scale(TableSize size)
+{
+    return (size.most_difference + PreintegratedTable::half_difference) / size.most_difference;
+}
+
 TablePlace::TablePlace(TableSize size)
     : sum_scale(0.5 * (size.means - 1)), sum_offset(0.5),
-      difference_scale(0.5 * (size.differences - 1) * (1.0 + PreintegratedTable::half_difference)),
+      difference_scale(0.5 * (size.differences - 1) * place_scale(size)),
       difference_offset(0.5 * size.differences)
 {
 }
@@ -143,6 +149,19 @@ SegmentOptics integrate_segment(const TransferFunction &transfer, float front, f
     return Steps(transfer, front, back).at(length);
 }
 
+SegmentEntry integrate_entry(const TransferFunction &transfer, double mean, double difference)
+{
+    const Steps steps(transfer, mean - 0.5 * difference, mean + 0.5 * difference);
+    const SegmentOptics thin = steps.at(0.0);
+    glm::vec3 fading(0.0F);
+    if (thin.extinction > 0.0F) {
+        constexpr double depth = 2.0;
+        const SegmentOptics faded = steps.at(depth / thin.extinction);
+        fading = (faded.color - thin.color) / static_cast<float>(fade(depth) * difference);
+    }
+    return {glm::vec4(thin.color, thin.extinction), glm::vec4(fading, 0.0F)};
+}
+
 PreintegratedTable::PreintegratedTable(const TransferFunction &transfer, TableSize size)
     : size_(size),
       thin_(static_cast<std::size_t>(size.means) * static_cast<std::size_t>(size.differences)),
@@ -158,33 +177,31 @@ PreintegratedTable::PreintegratedTable(const TransferFunction &transfer, TableSi
         part.get();
 }
 
-double PreintegratedTable::difference(int row) const
+double PreintegratedTable::difference(TableSize size, int row)
 {
-    const double place = (2.0 * row / (size_.differences - 1) - 1.0) / (1.0 + half_difference);
+    const double place = (2.0 * row / (size.differences - 1) - 1.0) / place_scale(size);
     return half_difference * place / (1.0 - std::abs(place));
+}
+
+SegmentEntry PreintegratedTable::entry(const TransferFunction &transfer, TableSize size, int column,
+                                       int row)
+{
+    const double mean = static_cast<double>(column) / (size.means - 1);
+    const double least = 1e-3 * size.most_difference; // For the limit of fading.
+    const double difference = PreintegratedTable::difference(size, row);
+    return integrate_entry(transfer, mean, std::abs(difference) < least ? least : difference);
 }
 
 void PreintegratedTable::fill(const TransferFunction &transfer, int first_difference,
                               int last_difference)
 {
     for (int j = first_difference; j < last_difference; ++j) {
-        double difference = this->difference(j);
-        if (std::abs(difference) < 1e-3)
-            difference = 1e-3; // For the limit of fading.
         for (int i = 0; i < size_.means; ++i) {
-            const double mean = static_cast<double>(i) / (size_.means - 1);
-            const Steps steps(transfer, mean - 0.5 * difference, mean + 0.5 * difference);
-            const SegmentOptics thin = steps.at(0.0);
-            glm::vec3 fading(0.0F);
-            if (thin.extinction > 0.0F) {
-                constexpr double depth = 2.0;
-                const SegmentOptics faded = steps.at(depth / thin.extinction);
-                fading = (faded.color - thin.color) / static_cast<float>(fade(depth) * difference);
-            }
+            const SegmentEntry entry = PreintegratedTable::entry(transfer, size_, i, j);
             const auto texel = static_cast<std::size_t>(j) * static_cast<std::size_t>(size_.means) +
                                static_cast<std::size_t>(i);
-            thin_[texel] = glm::vec4(thin.color, thin.extinction);
-            fading_[texel] = glm::vec4(fading, 0.0F);
+            thin_[texel] = entry.thin;
+            fading_[texel] = entry.fading;
         }
     }
 }

@@ -19,11 +19,12 @@ struct SegmentOptics {
     float extinction = 0.0F; ///< Mean over the segment.
 };
 
-/// Texels: from a mean of 0 to 1, and from a difference back - front of -1 to 1. Powers of two and
-/// one more have texels at 1/2, 1/4...
+/// Texels: from a mean of 0 to 1, and from a difference back - front of -most_difference to
+/// most_difference. Powers of two and one more have texels at 1/2, 1/4...
 struct TableSize {
     int means;
     int differences;
+    double most_difference = 1.0;
 };
 
 /// From a segment to texels, of which the first has its center at 1/2: of the sum of the scalars at
@@ -36,6 +37,16 @@ struct TablePlace {
     double difference_scale;
     double difference_offset;
 };
+
+/// What the table holds of a segment: (thin color, extinction), and ((thick color - thin color) /
+/// difference, 0). See PreintegratedTable.
+struct SegmentEntry {
+    glm::vec4 thin;
+    glm::vec4 fading;
+};
+
+/// Of the segment with these scalars in its middle and between its ends. `difference` is not 0.
+SegmentEntry integrate_entry(const TransferFunction &transfer, double mean, double difference);
 
 /// The integrals over segments, by the scalars at their ends. What depends on the length does so by
 /// the optical depth D = extinction * length alone: where extinction is constant and color goes
@@ -55,7 +66,7 @@ public:
     /// For a normalized transfer function.
     PreintegratedTable(const TransferFunction &transfer, TableSize size);
 
-    /// A difference d is at d / (|d| + half_difference) (1 + half_difference) from -1 to 1.
+    /// A difference d is at d / (|d| + half_difference), which is scaled to be from -1 to 1.
     static constexpr double half_difference = 1.0 / 16.0;
 
     /// Extinction is at most this, infinite extinction is this: in float, times the shortest
@@ -65,7 +76,11 @@ public:
     TableSize size() const { return size_; }
 
     /// Of the scalars, in a row of texels.
-    double difference(int row) const;
+    static double difference(TableSize size, int row);
+
+    /// What is in a texel: `column` is that of the mean.
+    static SegmentEntry entry(const TransferFunction &transfer, TableSize size, int column,
+                              int row);
 
     /// (thin color, extinction), and ((thick color - thin color) / difference, 0), which is as good
     /// as constant where colors are linear; means first. What no segment can be, as one of its ends

@@ -28,8 +28,7 @@ SegmentOpacity segment_opacity(float x)
 
 std::string make_opacity_program()
 {
-    return fmt::format("TEMP opacity;\n"
-                       "MAD opacity.y, depth.x, {2}, {1};\n"
+    return fmt::format("MAD opacity.y, depth.x, {2}, {1};\n"
                        "MAD opacity.y, depth.x, opacity.y, {0};\n"
                        "MAD opacity.z, depth.x, {5}, {4};\n"
                        "MUL opacity.w, depth.x, depth.x;\n"

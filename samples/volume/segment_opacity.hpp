@@ -31,7 +31,7 @@ struct SegmentOpacity {
 SegmentOpacity segment_opacity(float half_depth);
 
 /// The same as lines of an ARB program: of `depth.x`, half of the optical depth. They leave alpha
-/// in `opacity.x` and fading in `opacity.y`, a TEMP that they declare.
+/// in `opacity.x` and fading in `opacity.y`; both are TEMPs that stand before them.
 std::string make_opacity_program();
 
 /// In GLSL 3.30: vec2 opacity(float half_depth), alpha and fading.

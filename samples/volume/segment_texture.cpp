@@ -95,8 +95,8 @@ static std::vector<glm::vec4> pack_all(const PreintegratedTable &table)
     std::vector<glm::vec4> packed(table.thin().size());
     for (std::size_t i = 0; i < packed.size(); ++i) {
         const auto row = static_cast<int>(i / static_cast<std::size_t>(table.size().means));
-        packed[i] =
-            PackedSegmentTexture::pack(table.thin()[i], table.fading()[i], table.difference(row));
+        packed[i] = PackedSegmentTexture::pack(table.thin()[i], table.fading()[i],
+                                               PreintegratedTable::difference(table.size(), row));
     }
     return packed;
 }

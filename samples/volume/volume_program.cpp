@@ -48,7 +48,7 @@ std::string make_clear_program(int k)
 /// Composites the segment of entry 2. What needs it is the longest chain: it comes first.
 static std::string make_composite()
 {
-    return "TEMP optics, whole, depth, weight;\n"
+    return "TEMP optics, whole, depth, opacity, weight;\n"
            "TEX optics, kbuffer[2], texture[0], RECT;\n"
            "MUL depth.x, optics.w, kbuffer[2].z;\n" +
            make_opacity_program() +
@@ -66,24 +66,80 @@ static std::string make_composite()
                        1.0 / PackedSegmentTexture::color_steps);
 }
 
-/// Makes entry 2 of entry 1 and of the nearest fragment, which becomes entry 1.
-static std::string make_segment(TableSize table)
+/// Composites the parts of the segment of entry 2, front to back. They are of one length and of one
+/// difference, so that only the sum of the scalars at their ends differs.
+static std::string make_composite_parts(int parts, TableSize table)
+{
+    const TablePlace place(table);
+    constexpr double scale = CodedScalar::scale;
+    std::string text = fmt::format(
+        "TEMP segment_place, texel, optics, change, depth, opacity, weight, sum;\n"
+        "PARAM to_texel = {{ {}, {}, 0.0, 0.0 }};\n"
+        "PARAM first_texel = {{ {}, {}, 0.0, 0.0 }};\n"
+        "ADD segment_place.x, kbuffer[2].x, kbuffer[2].y;\n"
+        "SUB segment_place.w, kbuffer[2].y, kbuffer[2].x;\n"
+        "MUL segment_place.w, segment_place.w, {};\n" // The difference of a part.
+        "ABS segment_place.z, segment_place.w;\n"
+        "ADD segment_place.z, segment_place.z, {};\n"
+        "RCP segment_place.z, segment_place.z;\n"
+        "MUL segment_place.y, segment_place.w, segment_place.z;\n"
+        "MAD segment_place.xy, segment_place, to_texel, first_texel;\n"
+        "MUL segment_place.z, segment_place.w, {};\n" // From a part to the next.
+        "MOV texel, segment_place;\n"
+        "MOV sum, kbuffer[0];\n",
+        place.sum_scale / scale / table.means, place.difference_scale / table.differences,
+        (place.sum_offset - 2.0 * CodedScalar::offset * place.sum_scale / scale) / table.means,
+        place.difference_offset / table.differences, 1.0 / (parts * scale),
+        PreintegratedTable::half_difference, 2.0 * place.sum_scale / table.means);
+    for (int i = 0; i < parts; ++i)
+        text += fmt::format("MAD texel.x, segment_place.z, {}, segment_place.x;\n"
+                            "TEX optics, texel, texture[0], 2D;\n"
+                            "TEX change, texel, texture[1], 2D;\n"
+                            "MUL depth.x, optics.w, kbuffer[2].z;\n",
+                            i - 0.5 * (parts - 1)) +
+                make_opacity_program() +
+                "SUB weight.w, 1.0, sum.w;\n"
+                "MUL weight.xy, opacity, weight.w;\n"
+                "MUL weight.z, weight.y, segment_place.w;\n"
+                "MAD sum.xyz, optics, weight.x, sum;\n"
+                "MAD sum.xyz, change, weight.z, sum;\n"
+                "ADD sum.w, sum.w, weight.x;\n";
+    return text + "MOV result.kbuffer[0], sum;\n";
+}
+
+/// Makes entry 1 of the nearest fragment. Leaves the length of the segment between the two in
+/// `segment.x`, 0 if there is none, and the scalar of its back end in `nearest.y`.
+static std::string make_take_segment()
+{
+    return "TEMP tag, segment;\n"
+           "FLR tag.x, nearest.y;\n"
+           "SUB nearest.y, nearest.y, tag.x;\n"
+           "ADD result.kbuffer[1].z, kbuffer[1].z, tag.x;\n"
+           // One that comes too late is the end of no segment: the farthest stays.
+           "SUB segment.x, nearest.x, kbuffer[1].x;\n"
+           "SGE segment.y, nearest.x, kbuffer[1].x;\n"
+           "CMP result.kbuffer[1].xy, -segment.y, nearest, kbuffer[1];\n"
+           "MAX segment.x, segment.x, 0.0;\n"
+           "CMP segment.x, -kbuffer[1].z, segment.x, 0.0;\n";
+}
+
+/// Makes entry 2 of that segment.
+static std::string make_keep_parts(int parts)
+{
+    return fmt::format("MUL segment.x, segment.x, kbuffer[1].w;\n"
+                       "MUL result.kbuffer[2].z, segment.x, {};\n"
+                       "MOV result.kbuffer[2].x, kbuffer[1].y;\n"
+                       "MOV result.kbuffer[2].y, nearest.y;\n",
+                       0.5 / parts);
+}
+
+static std::string make_keep_whole(TableSize table)
 {
     using Packed = PackedSegmentTexture;
     const TablePlace place(table);
     // A scalar is (code - offset) / scale.
     constexpr double scale = CodedScalar::scale;
-    return fmt::format("TEMP tag, segment;\n"
-                       "FLR tag.x, nearest.y;\n"
-                       "SUB nearest.y, nearest.y, tag.x;\n"
-                       "ADD result.kbuffer[1].z, kbuffer[1].z, tag.x;\n"
-                       // One that comes too late is the end of no segment: the farthest stays.
-                       "SUB segment.x, nearest.x, kbuffer[1].x;\n"
-                       "SGE segment.y, nearest.x, kbuffer[1].x;\n"
-                       "CMP result.kbuffer[1].xy, -segment.y, nearest, kbuffer[1];\n"
-                       "MAX segment.x, segment.x, 0.0;\n"
-                       "CMP segment.x, -kbuffer[1].z, segment.x, 0.0;\n"
-                       "MUL result.kbuffer[2].z, segment.x, kbuffer[1].w;\n"
+    return fmt::format("MUL result.kbuffer[2].z, segment.x, kbuffer[1].w;\n"
                        "ADD segment.x, nearest.y, kbuffer[1].y;\n"
                        "MAD result.kbuffer[2].x, segment.x, {}, {};\n"
                        "SUB segment.x, nearest.y, kbuffer[1].y;\n"
@@ -101,12 +157,16 @@ static std::string make_segment(TableSize table)
                        place.difference_offset);
 }
 
-std::string make_volume_program(int k, TableSize table)
+std::string make_volume_program(int k, SegmentLookup lookup)
 {
+    const TableSize table = table_size(lookup);
+    const bool cut = lookup.interpolates();
     return header +
            fmt::format("# Puts in order what is no more than {} places from where it belongs.\n",
                        k) +
-           make_composite() + make_take_nearest(k, first_waiting) + make_segment(table) + "END\n";
+           (cut ? make_composite_parts(lookup.parts, table) : make_composite()) +
+           make_take_nearest(k, first_waiting) + make_take_segment() +
+           (cut ? make_keep_parts(lookup.parts) : make_keep_whole(table)) + "END\n";
 }
 
 std::string make_volume_shader(int cuts)
@@ -131,11 +191,35 @@ void add_optics(vec4 optics, vec3 change, float segment)
     color += vec4(optics.rgb * shares.x + change * shares.y, shares.x);
 }
 
+// Between scalars that are no further apart than 1 / cuts.
 void add_segment(float from, float to, float segment)
 {
     vec3 change;
     vec4 optics = look_up(from, to, change);
-    add_optics(optics, change, segment);
+    float parts = cuts > 0.0 ? min(ceil(4.0 * sqrt(optics.a * segment)), 16.0) : 1.0;
+    if (!(parts > 1.0)) {
+        add_optics(optics, change, segment);
+        return;
+    }
+    for (float i = 0.0; i < parts; ++i) {
+        optics = look_up(mix(from, to, i / parts), mix(from, to, (i + 1.0) / parts), change);
+        add_optics(optics, change, segment / parts);
+    }
+}
+
+void add_cut(float from_code, float to_code, float segment)
+{
+    float from = (from_code - scalar_offset) / scalar_scale;
+    float to = (to_code - scalar_offset) / scalar_scale;
+    float parts = max(ceil(abs(to - from) * cuts), 1.0);
+    segment /= parts;
+    float first = from;
+    for (float i = 1.0; i < parts; ++i) {
+        float end = mix(first, to, i / parts);
+        add_segment(from, end, segment);
+        from = end;
+    }
+    add_segment(from, to, segment);
 }
 
 void add(vec2 fragment)
@@ -143,19 +227,8 @@ void add(vec2 fragment)
     float tag = floor(fragment.y);
     float untagged = fragment.y - tag;
     float segment = fragment.x - front.x;
-    if (segment > 0.0 && front.z > 0.5) {
-        float from = (front.y - scalar_offset) / scalar_scale;
-        float to = (untagged - scalar_offset) / scalar_scale;
-        float parts = max(ceil(abs(to - from) * cuts), 1.0);
-        segment *= front.w / parts;
-        float first = from;
-        for (float i = 1.0; i < parts; ++i) {
-            float end = mix(first, to, i / parts);
-            add_segment(from, end, segment);
-            from = end;
-        }
-        add_segment(from, to, segment);
-    }
+    if (segment > 0.0 && front.z > 0.5)
+        add_cut(front.y, untagged, segment * front.w);
     front.z += tag;
     if (segment >= 0.0)
         front.xy = vec2(fragment.x, untagged);

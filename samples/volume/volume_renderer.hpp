@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "segment_lookup.hpp"
 #include "sorted_faces.hpp"
 #include "transfer_function.hpp"
 
@@ -17,6 +18,7 @@ struct VolumeSettings {
     int k = 6; ///< Fragments that wait in the k-buffer, or layers a pass of the exact renderer.
     TransferFunction transfer; ///< Normalized.
     glm::vec3 background{1.0F};
+    SegmentLookup lookup{}; ///< Of the k-buffer program.
 };
 
 /// Draws faces as a volume into a picture of floats.

@@ -33,6 +33,28 @@ double whole(const VolumeReport::Frame &frame)
     return frame.sort + frame.draw;
 }
 
+json to_json(const SegmentChoice &segments)
+{
+    return {{"parts", segments.lookup.parts},
+            {"interpolated", segments.lookup.interpolates()},
+            {"color_error", segments.error},
+            {"rays", segments.rays}};
+}
+
+/// What the lookups leave, and what colors are off by at most with that and a tolerance.
+std::string describe(const SegmentChoice &segments, double tolerance)
+{
+    std::string text =
+        segments.lookup.interpolates()
+            ? fmt::format("segments: in {} part{}, interpolated", segments.lookup.parts,
+                          segments.lookup.parts == 1 ? "" : "s")
+            : std::string("segments: whole, by the nearest texel");
+    text += fmt::format("; colors off by {:.2g} at most of {} rays", segments.error, segments.rays);
+    if (tolerance > 0.0)
+        text += fmt::format(", with the tolerance by {:.3g}", tolerance + segments.error);
+    return text;
+}
+
 /// Infinite extinction is a word, as JSON has no such number.
 json to_json(const TransferPoint &point, ScalarRange range)
 {
@@ -94,6 +116,8 @@ void print_report(const VolumeOptions &options, const VolumeScene &scene,
                options.size.height, frame.median, frame.p5, frame.p95, report.frames.size(),
                sort.median, report.passes, report.passes == 1 ? "" : "es", report.drawn,
                report.faces, report.bytes_per_pixel);
+    if (report.segments)
+        fmt::print("{}\n", describe(*report.segments, options.tolerance));
     if (report.disorder)
         fmt::print("{}\n", describe(*report.disorder, options.k));
     if (report.covered == 0)
@@ -145,6 +169,8 @@ Status write_report(const std::filesystem::path &path, const VolumeOptions &opti
          {{"sort", spread(report, [](const VolumeReport::Frame &f) { return f.sort; }).median},
           {"draw", spread(report, [](const VolumeReport::Frame &f) { return f.draw; }).median}}},
     };
+    if (report.segments)
+        document["segments"] = to_json(*report.segments);
     if (report.disorder)
         document["disorder"] = to_json(*report.disorder, options.k);
     return write_json(path, document);

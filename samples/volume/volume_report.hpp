@@ -4,6 +4,7 @@
 
 #include "disorder_report.hpp"
 #include "image.hpp"
+#include "segment_choice.hpp"
 #include "volume_options.hpp"
 #include "volume_scene.hpp"
 
@@ -21,12 +22,13 @@ struct VolumeReport {
         double draw; ///< Milliseconds, with what follows the drawing of the faces.
     };
     std::vector<Frame> frames;
-    std::size_t clusters = 0;    ///< Of cells; 0 if none were looked for.
-    std::size_t inner_faces = 0; ///< Within clusters.
-    double cluster_time = 0.0;   ///< Milliseconds, once for all frames.
-    std::size_t faces = 0;       ///< Without those.
-    std::size_t covered = 0;     ///< Pixels with anything but the background.
-    std::size_t drawn = 0;       ///< Without those that cover no pixel either.
+    std::size_t clusters = 0;              ///< Of cells; 0 if none were looked for.
+    std::size_t inner_faces = 0;           ///< Within clusters.
+    double cluster_time = 0.0;             ///< Milliseconds, once for all frames.
+    std::size_t faces = 0;                 ///< Without those.
+    std::size_t covered = 0;               ///< Pixels with anything but the background.
+    std::size_t drawn = 0;                 ///< Without those that cover no pixel either.
+    std::optional<SegmentChoice> segments; ///< Of the k-buffer program.
     int passes = 0;
     int bytes_per_pixel = 0;
     std::optional<DisorderReport> disorder;

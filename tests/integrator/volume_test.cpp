@@ -14,9 +14,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <utility>
 
 namespace
@@ -184,6 +186,74 @@ TEST_F(AgainstIntegrator, OneCell)
         expect_right(
             draw({"--exact", "--grid", path, "--size", "64x64", "--azimuth", azimuth, "--elevation",
                   "25", "--transfer-points", "0 1 0 0 0.5; 0.5 0 1 0 4; 1 0 0 1 1"}));
+}
+
+/// A cell, or a cube in 5 or 24 of them. Each has scalars from 0 to 1.
+TetGrid coarse_grid(std::size_t cells)
+{
+    TetGrid grid{{{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}},
+                 {{0, 1, 2, 3}},
+                 {{"s", {0.0F, 1.0F, 0.25F, 0.625F}}}};
+    if (cells == 1)
+        return grid;
+    grid = make_tet_grid({.cubes = 1,
+                          .split = cells == 5 ? CubeSplit::five : CubeSplit::twenty_four,
+                          .jitter = 0.0F,
+                          .sliver_share = 0.0F});
+    grid.fields = {{"s", {}}};
+    for (const glm::vec3 p : grid.points) {
+        const bool corner = std::abs(p.x) == 1.0F && std::abs(p.y) == 1.0F && std::abs(p.z) == 1.0F;
+        // Corners of one cell are on both sides.
+        const float side = cells == 5 ? p.x : p.x * p.y * p.z;
+        grid.fields.front().values.push_back(corner ? 0.5F + 0.5F * side
+                                                    : 0.4F + 0.2F * (p.x + p.y + p.z));
+    }
+    return grid;
+}
+
+/// Points from 0 to 1 with gaps of 1/24 at least, a third of them transparent.
+std::string random_transfer(unsigned seed)
+{
+    std::mt19937 random(seed);
+    const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+    std::string text;
+    for (int i = 0; i < 12; ++i) {
+        const double extinction = 30.0 * std::pow(unit(), 3.0);
+        text += fmt::format("{:.4f} {:.3f} {:.3f} {:.3f} {:.3f};", (i + 0.25 + 0.5 * unit()) / 12.0,
+                            unit(), unit(), unit(), i % 3 == 1 ? 0.0 : extinction);
+    }
+    text.pop_back();
+    return text;
+}
+
+TEST_F(AgainstIntegrator, CellsMayHaveAllScalars)
+{
+    const std::vector<std::pair<std::string, std::string>> transfers{
+        {"--transfer", "haze"},
+        {"--transfer", "shells"},
+        // That of the blunt fin, over the range of these scalars.
+        {"--transfer-points", "0 .5 .2 .8 25; .106 .4 .25 .8 0; .19 .2 .4 .9 0; "
+                              ".242 .15 .5 .95 1.2; .378 .1 .75 .6 3; .545 .6 .85 .2 7; "
+                              ".712 1 .6 .05 14; 1 .9 .05 .05 30"},
+        {"--transfer-points", random_transfer(1)},
+        {"--transfer-points", random_transfer(2)}};
+    for (const std::size_t cells : {1U, 5U, 24U}) {
+        const TetGrid grid = coarse_grid(cells);
+        ASSERT_EQ(grid.cells.size(), cells);
+        const auto path = directory_.write("coarse.vtk", vtk_file(grid, VtkForm::binary));
+        for (const auto &[option, transfer] : transfers) {
+            for (const char *tolerance : {"0", "0.01"}) {
+                SCOPED_TRACE(fmt::format("{} {} {}", cells, transfer, tolerance));
+                expect_right(
+                    draw({"--k", "6", "--grid", path, option, transfer, "--tolerance", tolerance,
+                          "--size", "72x72", "--azimuth", "17", "--elevation", "31"}),
+                    std::stod(tolerance) + 1.0 / 255.0);
+            }
+        }
+        expect_right(draw({"--k", "6", "--grid", path, "--transfer", "shells", "--size", "24x24",
+                           "--azimuth", "17", "--elevation", "31"},
+                          "softpipe"));
+    }
 }
 
 /// A box without its middle, and without a corner: rays leave it and enter again.
