@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -361,6 +362,59 @@ TEST(VolumeCommand, IsosurfaceSaysWhatItRepairedAndMeasured)
     const std::string some = run(with(command, {"--no-disorder"}), environment).out;
     EXPECT_EQ(some.find(repaired), 0U) << some;
     EXPECT_EQ(some.find("disorder"), std::string::npos) << some;
+}
+
+/// A command of bash, in which "$@" is the program with its arguments.
+ProcessResult run_in_shell(const std::string &text, const std::vector<std::string> &command)
+{
+    return run(with({"/bin/bash", "-c", text, "bash"}, command),
+               mesa_environment(patched_prefix()));
+}
+
+TEST(VolumeCommand, OutlivesTheReaderOfWhatItPrints)
+{
+    const TempDirectory directory;
+    for (const char *program : {KBUFFER_VOLUME, KBUFFER_ISOSURFACE}) {
+        SCOPED_TRACE(program);
+        const std::string out = directory / "out.png";
+        const ProcessResult result = run_in_shell(R"(set -m; "$@" | :; exit "${PIPESTATUS[0]}")",
+                                                  {program, "--size", "16x16", "--out", out});
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_TRUE(std::filesystem::exists(out));
+        std::filesystem::remove(out);
+    }
+}
+
+TEST(VolumeCommand, TellsOfThePictureBeforeDisorderAndEndsThatWhenInterrupted)
+{
+    const TempDirectory directory;
+    const struct {
+        std::vector<std::string> command;
+        std::string last_line;
+    } cases[] = {
+        {{KBUFFER_VOLUME, "--cubes", "24", "--json", directory / "out.json"}, "segments: "},
+        {{KBUFFER_ISOSURFACE, "--particles"}, "isosurface k="},
+    };
+    const std::string printed = directory / "printed";
+    const std::string out = directory / "out.png";
+    for (const auto &c : cases) {
+        SCOPED_TRACE(c.command[0]);
+        // A job of its own, as at a prompt: others have Ctrl-C ignored.
+        const ProcessResult result = run_in_shell(
+            "set -m; \"$@\" > '" + printed + "' & until grep -q '^" + c.last_line + "' '" +
+                printed + "'; do kill -0 $! 2>/dev/null || exit 99; sleep 0.02; done; test -s '" +
+                out + "' || exit 98; kill -INT $!; wait $!; status=$?; cat '" + printed +
+                "'; exit $status",
+            with(c.command, {"--size", "500x500", "--out", out}));
+        EXPECT_EQ(result.status, 130) << result.err;
+        EXPECT_NE(result.out.find("\ndisorder: not measured: interrupted\n"), std::string::npos)
+            << result.out;
+        std::filesystem::remove(out);
+    }
+    std::ifstream json(directory / "out.json");
+    const std::string text(std::istreambuf_iterator<char>(json), {});
+    EXPECT_NE(text.find("\"segments\""), std::string::npos) << text;
+    EXPECT_EQ(text.find("\"disorder\""), std::string::npos) << text;
 }
 
 /// A generated grid with cells of no volume among the others: with points that are the same, and

@@ -36,9 +36,10 @@ public:
         draw_faces(gl_, program_, faces_, size);
     }
 
-    Result<Disorder> capture_disorder(const OrbitCamera &, Size size) const override
+    Result<Disorder> capture_disorder(const OrbitCamera &, Size size,
+                                      const GoOn &go_on) const override
     {
-        return kb::capture_disorder(gl_, faces_, size);
+        return kb::capture_disorder(gl_, faces_, size, go_on);
     }
 
     Medium medium() const override { return Medium::grid; }

@@ -9,6 +9,7 @@
 #include "disorder.hpp"
 #include "gl_objects.hpp"
 #include "iso_program.hpp"
+#include "long_work.hpp"
 #include "sorted_faces.hpp"
 
 #include <memory>
@@ -29,7 +30,9 @@ public:
     virtual void draw(const OrbitCamera &camera, Size size) const = 0;
 
     /// How far from depth order the fragments come, since the last sort, which was for this camera.
-    virtual Result<Disorder> capture_disorder(const OrbitCamera &camera, Size size) const = 0;
+    /// An error if `go_on` ends it after a pass.
+    virtual Result<Disorder> capture_disorder(const OrbitCamera &camera, Size size,
+                                              const GoOn &go_on) const = 0;
 
     virtual Medium medium() const = 0;
     virtual std::size_t count() const = 0;

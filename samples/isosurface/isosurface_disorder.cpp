@@ -25,9 +25,10 @@ static Result<ImageRgbaF> draw(const Gl &gl, const IsosurfaceSettings &settings,
 
 Result<DisorderReport> measure_disorder(const Gl &gl, const IsosurfaceSettings &settings,
                                         const FragmentStream &stream, const OrbitCamera &camera,
-                                        std::span<const IsoValue> values, const ImageRgbaF &picture)
+                                        std::span<const IsoValue> values, const ImageRgbaF &picture,
+                                        const GoOn &go_on)
 {
-    auto fragments = stream.capture_disorder(camera, settings.shading.size);
+    auto fragments = stream.capture_disorder(camera, settings.shading.size, go_on);
     if (!fragments)
         return fragments.error();
     DisorderReport report{std::move(*fragments), {}};

@@ -3,6 +3,7 @@
 #include "isosurface_report.hpp"
 
 #include "report_json.hpp"
+#include "say.hpp"
 #include "timing.hpp"
 
 #include <fmt/format.h>
@@ -67,22 +68,22 @@ void print_report(const IsosurfaceOptions &options, const Source &source,
                   const IsosurfaceReport &report)
 {
     if (options.repair)
-        fmt::print("{}\n", describe(source.repairs));
-    if (source.medium == Medium::grid)
-        fmt::print("grid: {} points, {} cells{}", source.faces.positions.size(),
-                   source.cells.size(),
-                   describe_left_out(source.unused_points, source.joined_points));
-    else
-        fmt::print("particles: {}", source.points.size());
-    fmt::print("; {}; iso-values: {}\n", source.field_description,
-               list_values(report, source, [](const IsoValue &) { return true; }));
+        say(describe(source.repairs));
+    const std::string medium =
+        source.medium == Medium::grid
+            ? fmt::format("grid: {} points, {} cells{}", source.faces.positions.size(),
+                          source.cells.size(),
+                          describe_left_out(source.unused_points, source.joined_points))
+            : fmt::format("particles: {}", source.points.size());
+    say(fmt::format("{}; {}; iso-values: {}", medium, source.field_description,
+                    list_values(report, source, [](const IsoValue &) { return true; })));
     const Spread spread = spread_of(report.times);
     const std::size_t values = report.iso_values.size();
-    fmt::print("isosurface k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), 1 geometry "
-               "pass, {} {}, {} iso-value{}, {} bytes per pixel\n",
-               options.k, options.size.width, options.size.height, spread.median, spread.p5,
-               spread.p95, report.times.size(), report.primitives, report.primitive, values,
-               values == 1 ? "" : "s", report.bytes_per_pixel);
+    say(fmt::format("isosurface k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), 1 "
+                    "geometry pass, {} {}, {} iso-value{}, {} bytes per pixel",
+                    options.k, options.size.width, options.size.height, spread.median, spread.p5,
+                    spread.p95, report.times.size(), report.primitives, report.primitive, values,
+                    values == 1 ? "" : "s", report.bytes_per_pixel));
     print_emptiness(source, report);
 }
 

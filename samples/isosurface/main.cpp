@@ -10,8 +10,10 @@
 #include "isosurface_disorder.hpp"
 #include "isosurface_renderer.hpp"
 #include "isosurface_report.hpp"
+#include "long_work.hpp"
 #include "options.hpp"
 #include "particles.hpp"
+#include "say.hpp"
 #include "source.hpp"
 #include "timing.hpp"
 
@@ -131,21 +133,37 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
         .disorder = {},
     };
     kb::print_report(options, source, report);
-    if (options.measure_disorder) {
-        auto disorder =
-            kb::measure_disorder(gl, settings, **stream, options.camera, values, picture);
-        fmt::print("{}\n", disorder ? describe(*disorder, options.k)
-                                    : "disorder: not measured: " + disorder.error().message);
-        if (disorder)
-            report.disorder = std::move(*disorder);
-    }
-    if (!options.json.empty()) {
-        if (auto written = kb::write_report(options.json, options, source, report); !written)
-            return bad_input(written.error());
-    }
 
-    while ((*context)->present(renderer->framebuffer(), options.size, options.camera))
+    // The picture is there: what takes longer than it comes now.
+    const kb::OrbitCamera seen = options.camera;
+    bool open = (*context)->has_window();
+    const auto show = [&] {
+        open = open && (*context)->present(renderer->framebuffer(), options.size, options.camera);
+    };
+    show();
+    if (options.measure_disorder) {
+        kb::LongWork work("isosurface", "measuring disorder", "--no-disorder does without", [&] {
+            show();
+            if (!(*context)->has_window())
+                return std::string();
+            if (!open)
+                return std::string("the window was closed");
+            return std::string(kb::is_same_view(options.camera, seen) ? ""
+                                                                      : "the view has changed");
+        });
+        auto disorder = kb::measure_disorder(gl, settings, **stream, seen, values, picture,
+                                             [&work] { return work.go_on(); });
+        kb::say(disorder ? describe(*disorder, options.k)
+                         : "disorder: not measured: " +
+                               (work.reason().empty() ? disorder.error().message : work.reason()));
+    }
+    if (kb::LongWork::interrupted())
+        return Failure{{}, kb::exit_interrupted};
+
+    while (open) {
         draw();
+        show();
+    }
     return std::nullopt;
 }
 
@@ -175,13 +193,16 @@ int main(int argc, char **argv)
         fmt::print("{}", *fields);
         return 0;
     }
+    kb::outlive_readers();
     const auto source = kb::make_source(options);
     if (!source)
         return kb::fail(app, source.error(), kb::exit_bad_input);
 
     try {
         if (const auto failure = run(options, *source))
-            return kb::fail(app, failure->error, failure->status);
+            return failure->status == kb::exit_interrupted
+                       ? failure->status
+                       : kb::fail(app, failure->error, failure->status);
     } catch (const std::bad_alloc &) {
         return kb::fail(app, kb::Error{"there is not enough memory for --size and --k"},
                         kb::exit_lacking);

@@ -112,15 +112,16 @@ public:
         draw_with(program_, camera, size);
     }
 
-    Result<Disorder> capture_disorder(const OrbitCamera &camera, Size size) const override
+    Result<Disorder> capture_disorder(const OrbitCamera &camera, Size size,
+                                      const GoOn &go_on) const override
     {
         const auto program =
             Program::make(gl_, vertex_shader, std::string("#version 330\n") + arrival_shader);
         if (!program)
             return program.error();
         // A particle makes one fragment of a pixel at most.
-        return kb::capture_disorder(gl_, size, count(), GL_LESS,
-                                    [&] { draw_with(*program, camera, size); });
+        return kb::capture_disorder(
+            gl_, size, count(), GL_LESS, [&] { draw_with(*program, camera, size); }, go_on);
     }
 
     Medium medium() const override { return Medium::particles; }

@@ -20,6 +20,7 @@ namespace kb
 
 inline constexpr int exit_lacking = 1;
 inline constexpr int exit_bad_input = 2;
+inline constexpr int exit_interrupted = 130; ///< By Ctrl-C, as shells say it.
 
 /// The exit status with which the program ends now, if it does: after --help, --version or bad
 /// usage.

@@ -27,6 +27,9 @@ public:
     /// whether another frame is wanted: never by contexts without a window.
     virtual bool present(GLuint framebuffer, Size size, OrbitCamera &camera);
 
+    /// Whether present() shows anything.
+    virtual bool has_window() const { return false; }
+
 protected:
     Context() = default;
 
@@ -37,6 +40,12 @@ protected:
 /// window). The size matters to a window only: samples draw into framebuffer objects.
 Result<std::unique_ptr<Context>> make_context(const std::string &kind, Size size = {},
                                               const std::string &title = "kbuffer");
+
+/// Whether present() has left the camera where it was.
+inline bool is_same_view(const OrbitCamera &a, const OrbitCamera &b)
+{
+    return a.azimuth == b.azimuth && a.elevation == b.elevation && a.distance == b.distance;
+}
 
 /// An error that says how to get a driver with the extension, unless this is one.
 Status require_kbuffer_program(const Gl &gl);

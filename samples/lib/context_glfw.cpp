@@ -46,6 +46,8 @@ public:
         return ok;
     }
 
+    bool has_window() const override { return true; }
+
     bool present(GLuint framebuffer, Size size, OrbitCamera &camera) override
     {
         int width = 0;
@@ -85,9 +87,13 @@ private:
         const auto key = [this](int code) {
             return glfwGetKey(window_, code) == GLFW_PRESS ? 2.0F : 0.0F;
         };
-        camera.turn(key(GLFW_KEY_LEFT) - key(GLFW_KEY_RIGHT),
-                    key(GLFW_KEY_UP) - key(GLFW_KEY_DOWN));
-        camera.zoom(static_cast<float>(std::pow(0.9, scroll_)));
+        const float across = key(GLFW_KEY_LEFT) - key(GLFW_KEY_RIGHT);
+        const float up = key(GLFW_KEY_UP) - key(GLFW_KEY_DOWN);
+        // Nothing moves by itself: a camera may be where turning and zooming would not leave it.
+        if (across != 0.0F || up != 0.0F)
+            camera.turn(across, up);
+        if (scroll_ != 0.0)
+            camera.zoom(static_cast<float>(std::pow(0.9, scroll_)));
         scroll_ = 0.0;
     }
 

@@ -35,7 +35,7 @@ void append_layers(const Gl &gl, const DepthPeeling &peeling, Arrivals &pixels)
 }
 
 Result<Arrivals> capture_arrivals(const Gl &gl, Size size, std::size_t most_layers, GLenum nearer,
-                                  const std::function<void()> &draw)
+                                  const std::function<void()> &draw, const GoOn &go_on)
 {
     PeelingLayers layers;
     layers.size = size;
@@ -56,6 +56,8 @@ Result<Arrivals> capture_arrivals(const Gl &gl, Size size, std::size_t most_laye
         draw();
         gl.Disable(GL_DEPTH_PEELING_MESA);
         append_layers(gl, *peeling, pixels);
+        if (go_on && !go_on())
+            return Error{"stopped"};
         more = peeling->overflow();
         if (more && static_cast<std::size_t>(peeling->first_layer()) > most_layers)
             return Error{fmt::format("{} layers have not come to the end of {} primitives: this is "
@@ -74,9 +76,9 @@ Result<Arrivals> capture_arrivals(const Gl &gl, Size size, std::size_t most_laye
 } // namespace
 
 Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t most_layers, GLenum nearer,
-                                  const std::function<void()> &draw)
+                                  const std::function<void()> &draw, const GoOn &go_on)
 {
-    const auto pixels = capture_arrivals(gl, size, most_layers, nearer, draw);
+    const auto pixels = capture_arrivals(gl, size, most_layers, nearer, draw, go_on);
     if (!pixels)
         return pixels.error();
     Disorder disorder;
@@ -85,14 +87,16 @@ Result<Disorder> capture_disorder(const Gl &gl, Size size, std::size_t most_laye
     return disorder;
 }
 
-Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, Size size)
+Result<Disorder> capture_disorder(const Gl &gl, const SortedFaces &faces, Size size,
+                                  const GoOn &go_on)
 {
     const auto program = make_face_program(gl, arrival_shader);
     if (!program)
         return program.error();
     // A face makes one fragment of a pixel at most.
-    return capture_disorder(gl, size, faces.order().size(), GL_GREATER,
-                            [&] { draw_faces(gl, *program, faces, size); });
+    return capture_disorder(
+        gl, size, faces.order().size(), GL_GREATER, [&] { draw_faces(gl, *program, faces, size); },
+        go_on);
 }
 
 } // namespace kb

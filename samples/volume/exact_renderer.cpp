@@ -84,7 +84,7 @@ public:
           table_(gl, PreintegratedTable(settings.transfer, exact_table)),
           sums_({Sum(gl, size_), Sum(gl, size_)}),
           picture_(make_texture_2d(gl, GL_RGBA32F, size_.width, size_.height)), framebuffer_(gl),
-          empty_(gl)
+          empty_(gl), go_on_(settings.go_on)
     {
         add_.use();
         gl.Uniform1i(add_.uniform("fragments"), fragments_unit);
@@ -110,6 +110,8 @@ public:
             draw_layers(faces);
             add_layers();
             ++passes_;
+            if (go_on_ && !go_on_())
+                return Error{"stopped"};
             more = peeling_.overflow();
             // A pass takes k fragments of a pixel, of which a face makes at most one.
             if (more && static_cast<std::size_t>(peeling_.first_layer()) > faces.count())
@@ -208,6 +210,7 @@ private:
     Texture picture_;
     Framebuffer framebuffer_;
     VertexArray empty_;
+    GoOn go_on_;
     int passes_ = 0;
 };
 

@@ -12,7 +12,9 @@
 #include "cell_clusters.hpp"
 #include "context.hpp"
 #include "kbuffer.hpp"
+#include "long_work.hpp"
 #include "output.hpp"
+#include "say.hpp"
 #include "segment_choice.hpp"
 #include "subdivide.hpp"
 #include "timing.hpp"
@@ -21,8 +23,6 @@
 #include "volume_renderer.hpp"
 #include "volume_report.hpp"
 #include "volume_scene.hpp"
-
-#include <fmt/format.h>
 
 #include <new>
 
@@ -121,22 +121,48 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
     report.drawn = faces.order().size();
     report.passes = (*renderer)->passes();
     report.bytes_per_pixel = (*renderer)->bytes_per_pixel();
-    if (options.measure_disorder) {
-        auto disorder = kb::measure_disorder(gl, options, scene, faces, image);
-        if (disorder)
-            report.disorder = std::move(*disorder);
-        else
-            fmt::print("disorder: not measured: {}\n", disorder.error().message);
-    }
-    if (!options.json.empty()) {
-        if (auto written = kb::write_report(options.json, options, scene, report); !written)
-            return Failure{written.error(), kb::exit_bad_input};
-    }
     kb::print_report(options, scene, report);
 
-    while ((*context)->present((*renderer)->framebuffer(), options.size, options.scene.camera)) {
+    // The picture is there: what takes longer than it comes now.
+    kb::OrbitCamera &camera = options.scene.camera;
+    const kb::OrbitCamera seen = camera;
+    bool open = (*context)->has_window();
+    const auto show = [&] {
+        open = open && (*context)->present((*renderer)->framebuffer(), options.size, camera);
+    };
+    show();
+    if (options.measure_disorder) {
+        kb::LongWork work("volume", "measuring disorder", "--no-disorder does without", [&] {
+            show();
+            if (!(*context)->has_window())
+                return std::string();
+            if (!open)
+                return std::string("the window was closed");
+            return std::string(kb::is_same_view(camera, seen) ? "" : "the view has changed");
+        });
+        kb::VolumeOptions measured = options;
+        measured.scene.camera = seen;
+        auto disorder = kb::measure_disorder(gl, measured, scene, faces, image,
+                                             [&work] { return work.go_on(); });
+        if (disorder)
+            report.disorder = std::move(*disorder);
+        kb::say(disorder ? describe(*report.disorder, options.k)
+                         : "disorder: not measured: " +
+                               (work.reason().empty() ? disorder.error().message : work.reason()));
+    }
+    if (!options.json.empty()) {
+        kb::VolumeOptions drawn = options;
+        drawn.scene.camera = seen;
+        if (auto written = kb::write_report(options.json, drawn, scene, report); !written)
+            return Failure{written.error(), kb::exit_bad_input};
+    }
+    if (kb::LongWork::interrupted())
+        return Failure{{}, kb::exit_interrupted};
+
+    while (open) {
         if (auto drawn = draw(); !drawn)
             return lacking(drawn.error());
+        show();
     }
     return std::nullopt;
 }
@@ -153,6 +179,7 @@ int main(int argc, char **argv)
     kb::declare_options(app, options);
     if (const auto status = kb::parse_command_line(app, argc, argv))
         return *status;
+    kb::outlive_readers();
     for (const auto &file : {options.picture, options.floats, options.json}) {
         if (auto writable = kb::check_writable(file); !writable)
             return kb::fail(app, writable.error(), kb::exit_bad_input);
@@ -170,7 +197,9 @@ int main(int argc, char **argv)
         if (!scene)
             return kb::fail(app, scene.error(), kb::exit_bad_input);
         if (const auto failure = run(options, *scene))
-            return kb::fail(app, failure->error, failure->status);
+            return failure->status == kb::exit_interrupted
+                       ? failure->status
+                       : kb::fail(app, failure->error, failure->status);
     } catch (const std::bad_alloc &) {
         return kb::fail(app, kb::Error{"there is not enough memory for --grid, --size and --k"},
                         kb::exit_lacking);

@@ -10,10 +10,11 @@ namespace kb
 {
 
 static Result<ImageRgbaF> draw_exact(const Gl &gl, const VolumeOptions &options,
-                                     const VolumeScene &scene)
+                                     const VolumeScene &scene, const GoOn &go_on)
 {
     VolumeSettings settings{options.size, 0, scene.transfer, options.background};
     settings.k = 32; // Layers a pass: many, as each pass draws all faces.
+    settings.go_on = go_on;
     const auto renderer = make_exact_renderer(gl, settings);
     if (!renderer)
         return renderer.error();
@@ -26,15 +27,15 @@ static Result<ImageRgbaF> draw_exact(const Gl &gl, const VolumeOptions &options,
 
 Result<DisorderReport> measure_disorder(const Gl &gl, const VolumeOptions &options,
                                         const VolumeScene &scene, const SortedFaces &faces,
-                                        const ImageRgbaF &picture)
+                                        const ImageRgbaF &picture, const GoOn &go_on)
 {
-    auto fragments = capture_disorder(gl, faces, options.size);
+    auto fragments = capture_disorder(gl, faces, options.size, go_on);
     if (!fragments)
         return fragments.error();
     DisorderReport report{std::move(*fragments), {}};
     if (options.exact)
         return report;
-    const auto exact = draw_exact(gl, options, scene);
+    const auto exact = draw_exact(gl, options, scene, go_on);
     if (!exact)
         return exact.error();
     const auto colors = color_error(picture, *exact, report.fragments.pixels());

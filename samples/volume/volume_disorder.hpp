@@ -3,6 +3,7 @@
 #pragma once
 
 #include "disorder_report.hpp"
+#include "long_work.hpp"
 #include "sorted_faces.hpp"
 #include "volume_options.hpp"
 #include "volume_scene.hpp"
@@ -12,9 +13,9 @@ namespace kb
 
 /// `faces` made the picture as they are sorted; they may be the scene's own ones or pieces of them.
 /// Its colors are compared with the exact picture of the scene's own faces, unless it is exact
-/// itself.
+/// itself. An error if `go_on` ends it after a pass.
 Result<DisorderReport> measure_disorder(const Gl &gl, const VolumeOptions &options,
                                         const VolumeScene &scene, const SortedFaces &faces,
-                                        const ImageRgbaF &picture);
+                                        const ImageRgbaF &picture, const GoOn &go_on);
 
 } // namespace kb

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "long_work.hpp"
 #include "segment_lookup.hpp"
 #include "sorted_faces.hpp"
 #include "transfer_function.hpp"
@@ -19,6 +20,7 @@ struct VolumeSettings {
     TransferFunction transfer; ///< Normalized.
     glm::vec3 background{1.0F};
     SegmentLookup lookup{}; ///< Of the k-buffer program.
+    GoOn go_on{};           ///< Between passes of the exact renderer: an error if that ends it.
 };
 
 /// Draws faces as a volume into a picture of floats.

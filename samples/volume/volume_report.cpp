@@ -3,6 +3,7 @@
 #include "volume_report.hpp"
 
 #include "report_json.hpp"
+#include "say.hpp"
 #include "timing.hpp"
 
 #include <fmt/format.h>
@@ -96,30 +97,28 @@ void print_report(const VolumeOptions &options, const VolumeScene &scene,
                   const VolumeReport &report)
 {
     if (options.scene.repair)
-        fmt::print("{}\n", describe(scene.repairs));
-    fmt::print("grid: {} points, {} cells{}; {}; transfer function: {}\n", scene.grid.points.size(),
-               scene.grid.cells.size(),
-               describe_left_out(scene.grid.unused_points, scene.joined_points),
-               scene.field_description,
-               options.scene.transfer_points.empty() ? options.scene.transfer
-                                                     : options.scene.transfer_points);
+        say(describe(scene.repairs));
+    say(fmt::format("grid: {} points, {} cells{}; {}; transfer function: {}",
+                    scene.grid.points.size(), scene.grid.cells.size(),
+                    describe_left_out(scene.grid.unused_points, scene.joined_points),
+                    scene.field_description,
+                    options.scene.transfer_points.empty() ? options.scene.transfer
+                                                          : options.scene.transfer_points));
     if (report.clusters > 0)
-        fmt::print("joined: {} cells in {} clusters, {} faces in them are not drawn ({:.0f} ms, "
-                   "once)\n",
-                   scene.grid.cells.size(), report.clusters, report.inner_faces,
-                   report.cluster_time);
+        say(fmt::format("joined: {} cells in {} clusters, {} faces in them are not drawn ({:.0f} "
+                        "ms, once)",
+                        scene.grid.cells.size(), report.clusters, report.inner_faces,
+                        report.cluster_time));
     const Spread frame = spread(report, whole);
     const Spread sort = spread(report, [](const VolumeReport::Frame &f) { return f.sort; });
-    fmt::print("volume {} k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times; sorting "
-               "{:.2f}), {} geometry pass{}, {} of {} faces drawn, {} bytes per pixel\n",
-               options.exact ? "exact" : "kbuffer", options.k, options.size.width,
-               options.size.height, frame.median, frame.p5, frame.p95, report.frames.size(),
-               sort.median, report.passes, report.passes == 1 ? "" : "es", report.drawn,
-               report.faces, report.bytes_per_pixel);
+    say(fmt::format("volume {} k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times; sorting "
+                    "{:.2f}), {} geometry pass{}, {} of {} faces drawn, {} bytes per pixel",
+                    options.exact ? "exact" : "kbuffer", options.k, options.size.width,
+                    options.size.height, frame.median, frame.p5, frame.p95, report.frames.size(),
+                    sort.median, report.passes, report.passes == 1 ? "" : "es", report.drawn,
+                    report.faces, report.bytes_per_pixel));
     if (report.segments)
-        fmt::print("{}\n", describe(*report.segments, options.tolerance));
-    if (report.disorder)
-        fmt::print("{}\n", describe(*report.disorder, options.k));
+        say(describe(*report.segments, options.tolerance));
     if (report.covered == 0)
         fmt::print(stderr, "volume: the picture is empty: {}\n", describe_emptiness(scene));
     else if (!scene.range.varies)

@@ -37,8 +37,8 @@ struct VolumeReport {
 /// Pixels with an alpha above zero.
 std::size_t count_covered(const ImageRgbaF &image);
 
-/// Lines for people: what was drawn, what it cost, its disorder, and why nothing is to be seen if
-/// that is so.
+/// Lines for people, but that about disorder, which is measured later: what was drawn, what it
+/// cost, and why nothing is to be seen if that is so.
 void print_report(const VolumeOptions &options, const VolumeScene &scene,
                   const VolumeReport &report);
 
