@@ -6,13 +6,25 @@ set -Eeuo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build=$root/build
 logs=$build/log
-command_name=scripts/$(basename "$0")
+command_name=scripts/$(basename "$(readlink -f "$0")")
 
 # The distribution's tools, not what a user's environment put before them: the distribution's
-# Python is the one that has the modules of the packages that packages.txt lists.
+# Python is the one that has the modules of the packages that packages.txt lists. A program of the
+# user's gets back what is changed here.
+declare -A users_environment=()
+for variable in PATH GIT_DIR GIT_WORK_TREE GIT_INDEX_FILE PYTHONHOME PYTHONPATH; do
+    [ -z "${!variable+set}" ] || users_environment[$variable]=${!variable}
+done
+unset variable GIT_DIR GIT_WORK_TREE GIT_INDEX_FILE PYTHONHOME PYTHONPATH
 export PATH=/usr/bin:/bin:/usr/sbin:/sbin:$PATH
 python=/usr/bin/python3
-unset GIT_DIR GIT_WORK_TREE GIT_INDEX_FILE
+
+restore_users_environment() {
+    local name
+    for name in "${!users_environment[@]}"; do
+        export "$name=${users_environment[$name]}"
+    done
+}
 
 # A variable of the user, so that a shared machine can be spared.
 jobs=${KBUFFER_JOBS:-$(nproc)}

@@ -106,6 +106,9 @@ install_mesa() {
     rm -f "$2/.complete"
     logged "installing into $2" "$(basename "$2")-install.log" \
         "${meson[@]}" install -C "$1" --no-rebuild --only-changed
+    # With its folder the library is found by programs, too, that look for others in one of theirs.
+    sed -i -E "s|(\"library_path\" *: *\").*(libEGL_mesa)|\1$2/$libdir/\2|" \
+        "$2/share/glvnd/egl_vendor.d/50_mesa.json"
     date >"$2/.complete"
 }
 

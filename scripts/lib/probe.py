@@ -1,5 +1,5 @@
 """Prints which OpenGL driver answers a program that uses EGL as every program does, without a
-window: renderer, version, the file of the driver, and whether it has GL_MESA_kbuffer_program."""
+window: renderer, version, the file of the driver, and whether it has the extensions."""
 
 import ctypes
 import sys
@@ -7,7 +7,7 @@ import sys
 EGL_OPENGL_BIT, EGL_RENDERABLE_TYPE, EGL_SURFACE_TYPE, EGL_NONE = 0x0008, 0x3040, 0x3033, 0x3038
 EGL_PLATFORM_SURFACELESS_MESA, EGL_OPENGL_API = 0x31DD, 0x30A2
 GL_RENDERER, GL_VERSION, GL_EXTENSIONS = 0x1F01, 0x1F02, 0x1F03
-EXTENSION = "GL_MESA_kbuffer_program"
+EXTENSIONS = ("GL_MESA_kbuffer_program", "GL_MESA_depth_peeling")
 
 
 def library_file():
@@ -41,7 +41,8 @@ def main():
     print("driver:", get_string(GL_RENDERER).decode())
     print("version:", get_string(GL_VERSION).decode())
     print("library:", library_file())
-    print(f"{EXTENSION}:", "yes" if EXTENSION in extensions else "no")
+    for name in EXTENSIONS:
+        print(f"{name}:", "yes" if name in extensions else "no")
 
 
 main()
