@@ -98,7 +98,7 @@ def main(hooks, overlay, release, series):
             passed += 1
 
     names = sorted(os.listdir(hooks))
-    exported = sorted(os.listdir(series))
+    exported = sorted(name for name in os.listdir(series) if name.endswith(".patch"))
     for number, name in enumerate(names, 1):
         judge(name, faults(os.path.join(hooks, name), overlay, release))
     judge("numbers of the hooks run from 1", (
@@ -110,13 +110,20 @@ def main(hooks, overlay, release, series):
     return failed > 0
 
 
+def without_author(text):
+    """An export names another than the hook, in whose head the name may take two lines."""
+    head, separator, rest = text.partition(b"\n\n")
+    return re.sub(rb"\nFrom: .*(\n .*)*", b"", head) + separator + rest
+
+
 def different(hooks, names, series, exported):
-    # The overlay, if there is one, is the first of the exported series.
+    # The parts of the overlay, if there is one, are the first of the exported series.
     exported = exported[len(exported) - len(names):]
     for name, other in zip(names, exported):
         with open(os.path.join(hooks, name), "rb") as ours:
             with open(os.path.join(series, other), "rb") as theirs:
-                if name[4:] != other[4:] or ours.read() != theirs.read():
+                if name[4:] != other[4:] or (
+                        without_author(ours.read()) != without_author(theirs.read())):
                     yield f"{name} is not {other}"
 
 

@@ -126,8 +126,9 @@ test_export_applies_to_the_release() {
     make_patches
     run 0 scripts/patch export "$work/series"
     run 0 scripts/patch export "$work/series"
-    [ "$(ls "$work/series")" = "0001-mesa-add-the-files-of-the-k-buffer-extensions.patch
-0002-a-count-in-German.patch" ]
+    [ "$(ls "$work/series")" = "0001-mesa-add-what-else-the-k-buffer-extensions-need.patch
+0002-a-count-in-German.patch
+series" ]
     git init -q "$work/mesa-0"
     git -C "$work/mesa-0" add -A
     git -C "$work/mesa-0" -c user.name=a -c user.email=a@localhost commit -qm release
@@ -143,4 +144,83 @@ test_export_leaves_other_files_alone() {
     run 1 scripts/patch export "$work/series"
     prints "notes.txt"
     grep -q mine "$work/series/notes.txt"
+}
+
+# A patch of that form is as much somebody's work as any other file, and so is an edit of ours.
+test_export_replaces_only_what_it_wrote() {
+    make_patches
+    mkdir "$work/series"
+    echo mine >"$work/series/0007-mine.patch"
+    run 1 scripts/patch export "$work/series"
+    prints "0007-mine.patch"
+    grep -q mine "$work/series/0007-mine.patch"
+    rm "$work/series/0007-mine.patch"
+    run 0 scripts/patch export "$work/series"
+    rm -r "$project/mesa-patches/overlay"
+    run 0 scripts/patch export "$work/series"
+    [ "$(ls "$work/series")" = "0001-a-count-in-German.patch
+series" ]
+    echo more >>"$work/series/0001-a-count-in-German.patch"
+    run 1 scripts/patch export "$work/series"
+    prints "0001-a-count-in-German.patch"
+    grep -q more "$work/series/0001-a-count-in-German.patch"
+}
+
+test_export_names_an_author() {
+    make_patches
+    run 0 scripts/patch export "$work/series"
+    [ "$(grep -h ^From: "$work"/series/*.patch | sort -u)" = \
+        "From: The mesa-kbuffer authors <authors@mesa-kbuffer.example>" ]
+    run 0 scripts/patch export --author 'Ann Other <ann@example.org>' "$work/series"
+    [ "$(grep -h ^From: "$work"/series/*.patch | sort -u)" = "From: Ann Other <ann@example.org>" ]
+    run 2 scripts/patch export --author ann "$work/series"
+    lines 1
+}
+
+# One author line may be folded; the export has the other one alone.
+test_export_replaces_a_folded_author() {
+    make_patches
+    sed -i 's/^From: .*/From: A name that is so long that it takes another line of the head\n <a@localhost>/' \
+        "$project"/mesa-patches/hooks/0001-*.patch
+    run 0 scripts/patch export "$work/series"
+    ! grep -r localhost "$work/series"
+}
+
+test_export_for_debian_has_its_fields() {
+    make_patches
+    run 0 scripts/patch export --debian "$work/series"
+    local patch=$work/series/0002-a-count-in-German.patch field
+    [ "$(head -n 1 "$patch")" = "Description: a: count in German" ]
+    for field in 'Author: The mesa-kbuffer authors <.*>' 'Origin: other, .*' 'Forwarded: no' \
+        'Last-Update: 20[0-9]{2}-[0-9]{2}-[0-9]{2}'; do
+        grep -qxE "$field" "$patch"
+    done
+    [ "$(cat "$work/series/series")" = "0001-mesa-add-what-else-the-k-buffer-extensions-need.patch
+0002-a-count-in-German.patch" ]
+    while read -r patch; do
+        patch -s -d "$work/mesa-0" -p1 --fuzz=0 <"$work/series/$patch"
+    done <"$work/series/series"
+    grep -q drei "$work/mesa-0/src/a.c"
+    grep -q new "$work/mesa-0/src/new/n.c"
+}
+
+test_export_cuts_the_overlay_by_part() {
+    make_patches
+    local file
+    for file in include/GL/h.h src/mesa/main/m.c src/mesa/state_tracker/s.c \
+        src/gallium/drivers/softpipe/sp.c src/gallium/drivers/llvmpipe/lp_bld_kbuf.c \
+        src/gallium/drivers/llvmpipe/lp_peel.c; do
+        mkdir -p "$(dirname "$project/mesa-patches/overlay/$file")"
+        echo "$file" >"$project/mesa-patches/overlay/$file"
+    done
+    run 0 scripts/patch export "$work/series"
+    [ "$(cat "$work/series/series")" = "0001-gallium-add-the-interface-of-the-k-buffer-stage.patch
+0002-mesa-add-the-files-of-the-k-buffer-extensions.patch
+0003-st-mesa-add-the-files-of-the-k-buffer-extensions.patch
+0004-softpipe-add-the-files-of-the-k-buffer-stage.patch
+0005-llvmpipe-add-the-files-of-k-buffer-programs.patch
+0006-llvmpipe-add-the-files-of-depth-peeling.patch
+0007-mesa-add-what-else-the-k-buffer-extensions-need.patch
+0008-a-count-in-German.patch" ]
+    [ "$(grep -lr lp_peel "$work/series" --include '*.patch')" = "$work/series/0006-llvmpipe-add-the-files-of-depth-peeling.patch" ]
 }
