@@ -101,6 +101,22 @@ configure() {
     printf '%s\n' "$stamp" >"$dir/.kbuffer-options"
 }
 
+# write_package_file PREFIX: for programs that use EGL or GLX, whose libraries are the vendor-neutral
+# ones of the distribution; only the header is the prefix's
+write_package_file() {
+    [ -f "$1/include/GL/mesa_kbuffer.h" ] || return 0
+    cat >"$1/$libdir/pkgconfig/mesa-kbuffer.pc" <<END
+prefix=$1
+includedir=\${prefix}/include
+
+Name: mesa-kbuffer
+Description: GL_MESA_kbuffer_program and GL_MESA_depth_peeling in EGL and GLX contexts
+Version: $mesa_version
+Requires: egl gl
+Cflags: -I\${includedir}
+END
+}
+
 # install_mesa BUILD_DIR PREFIX: a prefix is whole when it holds the stamp
 install_mesa() {
     rm -f "$2/.complete"
@@ -109,6 +125,7 @@ install_mesa() {
     # With its folder the library is found by programs, too, that look for others in one of theirs.
     sed -i -E "s|(\"library_path\" *: *\").*(libEGL_mesa)|\1$2/$libdir/\2|" \
         "$2/share/glvnd/egl_vendor.d/50_mesa.json"
+    write_package_file "$2"
     date >"$2/.complete"
 }
 
