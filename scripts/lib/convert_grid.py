@@ -38,6 +38,7 @@ from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
 from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
 
 import legacy_vtk
+import output_file
 import plot3d
 
 # A hexahedron of a structured grid in five tetrahedra, for hexahedra with an even and an odd sum of
@@ -362,7 +363,6 @@ def read_by_meshio(path):
 
 
 def write(grid, path):
-    """A whole file or none."""
     data = vtkUnstructuredGrid()
     points = vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(narrowed(grid.points)), deep=True))
@@ -375,9 +375,7 @@ def write(grid, path):
         array = numpy_to_vtk(np.ascontiguousarray(narrowed(values)), deep=True)
         array.SetName(name)
         data.GetPointData().AddArray(array)
-    folder = os.path.dirname(os.path.abspath(path))
-    with tempfile.TemporaryDirectory(dir=folder) as temporary:
-        made = os.path.join(temporary, "grid.vtk")
+    with output_file.written(path) as made:
         writer = vtkUnstructuredGridWriter()
         writer.SetFileTypeToBinary()
         writer.SetHeader("tetrahedral grid")
@@ -385,7 +383,6 @@ def write(grid, path):
         writer.SetInputData(data)
         if not writer.Write() or not os.path.exists(made):
             raise OSError("VTK cannot write it")
-        os.replace(made, path)
 
 
 VTK_ENDINGS = (".vtk", ".vtu", ".vts", ".vti", ".vtr")
@@ -415,7 +412,8 @@ def convert(options):
     print(f"    {len(grid.points):,} points, {len(grid.cells):,} of {count:,} tetrahedra:"
           f" {left_out:,} without volume left out, {turned:,} turned,"
           f" {joined:,} points joined; fields: {', '.join(grid.arrays)}{source}"
-          + "".join(f"; {note}" for note in grid.notes))
+          + "".join(f"; {note}" for note in grid.notes),
+          file=sys.stderr if output_file.is_standard_output(options.output) else sys.stdout)
 
 
 def main():

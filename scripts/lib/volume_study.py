@@ -20,6 +20,8 @@ import tempfile
 import numpy
 from matplotlib.image import imsave
 
+import output_file
+
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PROJECT = os.path.join(ROOT, "build", "project")
 RUN = os.path.join(ROOT, "scripts", "run")
@@ -254,13 +256,12 @@ def main():
             document["tolerances"] += study.tolerances(scene)
             if "shells" not in name:
                 document["accuracy"] += study.accuracy(scene)
-        with open(options.out + ".new", "w", encoding="utf-8") as file:
+        with output_file.written(options.out) as made, open(made, "w", encoding="utf-8") as file:
             json.dump(document, file, indent=1)
         target = os.path.splitext(options.out)[0]
         shutil.rmtree(target, ignore_errors=True)
         os.chmod(study.pictures, 0o755)
         shutil.move(study.pictures, target)
-        os.replace(options.out + ".new", options.out)
     finally:
         shutil.rmtree(study.folder, ignore_errors=True)
 

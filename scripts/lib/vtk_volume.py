@@ -9,13 +9,14 @@ that value. scripts/tests/vtk_volume_check.py proves it on one cell."""
 
 import argparse
 import json
-import os
 import sys
 import time
 
 import numpy
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+import output_file
 
 # What it is, the mapper, its ray integrator or None for VTK's default
 METHODS = {
@@ -149,10 +150,9 @@ class Picture:
 def write_pfm(path, pixels):
     """The color channels, as samples/lib/image_file.cpp writes them."""
     height, width, _ = pixels.shape
-    with open(path + ".new", "wb") as file:
+    with output_file.written(path) as made, open(made, "wb") as file:
         file.write(f"PF\n{width} {height}\n-1.0\n".encode())
         file.write(numpy.ascontiguousarray(pixels[:, :, :3], dtype="<f4").tobytes())
-    os.replace(path + ".new", path)
 
 
 def main():

@@ -46,6 +46,16 @@ test_unknown_studies() {
     absent build
 }
 
+test_bench_writes_its_report_beside_a_file() {
+    local out
+    for out in '' - /dev/stdout results.png; do
+        run 2 scripts/bench --out "$out"
+        prints "--out takes a .json file"
+        lines 1
+    done
+    absent build
+}
+
 test_fuzz_takes_known_targets_and_drivers() {
     run 2 scripts/fuzz textures
     prints textures

@@ -173,3 +173,22 @@ test_grid_from_a_folder() {
     prints "2 bytes, build/data/cube.vtk"
     no_temporaries
 }
+
+test_convert_grid_writes_where_the_name_leads() {
+    make_grids
+    convert plain "$PWD/hexahedra.vtk"
+    run 2 scripts/convert-grid "$PWD/hexahedra.vtk" /dev/full
+    prints "No space left on device"
+    lines 1
+    [ -c /dev/full ]
+    "$project/scripts/convert-grid" "$PWD/hexahedra.vtk" - >"$work/printed.vtk" 2>"$work/said"
+    cmp "$work/printed.vtk" "$work/made/plain.vtk"
+    grep -q tetrahedra "$work/said"
+    echo old >"$work/target.vtk"
+    chmod 604 "$work/target.vtk"
+    ln -s target.vtk "$work/link.vtk"
+    run 0 scripts/convert-grid "$PWD/hexahedra.vtk" "$work/link.vtk"
+    [ -L "$work/link.vtk" ]
+    [ "$(stat -c %a "$work/target.vtk")" = 604 ]
+    cmp "$work/target.vtk" "$work/made/plain.vtk"
+}

@@ -5,6 +5,9 @@ import os
 import sys
 from html import escape
 
+sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+import output_file  # noqa: E402 # pylint: disable=wrong-import-position
+
 STYLE = """
 :root { color-scheme: light; }
 body { font: 16px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff;
@@ -79,8 +82,7 @@ def document(title, body):
 def write_whole(target, text):
     """There is a whole file or none. Ends the program if it cannot be written."""
     try:
-        with open(target + ".new", "w", encoding="utf-8") as file:
+        with output_file.written(target) as made, open(made, "w", encoding="utf-8") as file:
             file.write(text)
-        os.replace(target + ".new", target)
     except OSError as error:
         sys.exit(f"{target}: {error.strerror}")
