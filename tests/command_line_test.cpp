@@ -257,6 +257,74 @@ TEST(CommandLine, IsosurfaceWorksOtherwise)
     }
 }
 
+TEST(CommandLine, OutputsGoWhereTheirNamesLead)
+{
+    const TempDirectory directory;
+    const auto environment = mesa_environment(patched_prefix());
+    const struct {
+        std::vector<std::string> command;
+        std::string option;
+        std::string beginning; ///< Of the file.
+    } outputs[] = {
+        {{KBUFFER_TRANSPARENCY, "--size", "16x16", "--triangles", "100"}, "--out", "\x89PNG\r\n"},
+        {{KBUFFER_TRANSPARENCY, "--size", "16x16", "--triangles", "100"}, "--float-out", "PF\n16"},
+        {{KBUFFER_PEELING, "--size", "16x16", "--triangles", "100"}, "--out", "\x89PNG\r\n"},
+        {{KBUFFER_ISOSURFACE, "--size", "16x16"}, "--float-out", "PF\n16"},
+        {{KBUFFER_ISOSURFACE, "--size", "16x16"}, "--surfaces-out", "PF\n16"},
+    };
+    for (const auto &output : outputs) {
+        const auto to = [&](const std::vector<std::string> &arguments) {
+            auto command = output.command;
+            command.push_back(output.option);
+            command.insert(command.end(), arguments.begin(), arguments.end());
+            return run(command, environment);
+        };
+        SCOPED_TRACE(output.command[0] + " " + output.option);
+        const std::string program = std::filesystem::path(output.command[0]).filename();
+        for (const char *name : {"-", "/dev/stdout"}) {
+            const auto printed = to({name});
+            EXPECT_EQ(printed.status, 0) << printed.err;
+            EXPECT_EQ(printed.out.find(output.beginning), 0U);
+            EXPECT_EQ(printed.out.find(" ms"), std::string::npos);
+            EXPECT_NE(printed.err.find("1 geometry pass,"), std::string::npos) << printed.err;
+        }
+        const auto full = to({"/dev/full"});
+        EXPECT_EQ(full.status, 2);
+        EXPECT_EQ(full.err, program + ": cannot write /dev/full: No space left on device\n");
+        expect_refused(to({directory / "out.jpg"}), program, "not a .jpg file");
+    }
+    expect_refused(run({KBUFFER_TRANSPARENCY, "--out", "-", "--float-out", "-"}, environment),
+                   "transparency", "only one file can be written to the standard output");
+    EXPECT_EQ(directory.file_count(), 0U);
+}
+
+TEST(CommandLine, WhatIsPrintedMustArrive)
+{
+    const auto to_full_disk = [](std::vector<std::string> command) {
+        command.insert(command.begin(), {"/bin/sh", "-c", "exec \"$0\" \"$@\" >/dev/full"});
+        return run(command, mesa_environment(patched_prefix()));
+    };
+    expect_refused(to_full_disk({KBUFFER_TRANSPARENCY, "--size", "16x16", "--triangles", "100"}),
+                   "transparency", "standard output", 1);
+    expect_refused(to_full_disk({KBUFFER_ISOSURFACE, "--help"}), "isosurface", "standard output",
+                   1);
+    expect_refused(to_full_disk({KBUFFER_PROGRAM_TOOL, "--k", "128"}), "kbuffer-program",
+                   "standard output: No space left on device");
+}
+
+TEST(CommandLine, OneFrameHasNoPercentiles)
+{
+    for (const char *program : {KBUFFER_TRANSPARENCY, KBUFFER_PEELING, KBUFFER_ISOSURFACE}) {
+        const auto frames = [program](const char *count) {
+            return run({program, "--size", "16x16", "--repeat", count},
+                       mesa_environment(patched_prefix()))
+                .out;
+        };
+        EXPECT_EQ(frames("1").find("95 %"), std::string::npos) << program;
+        EXPECT_NE(frames("2").find(" ms (5 % "), std::string::npos) << program;
+    }
+}
+
 TEST(CommandLine, MissingExtensionSaysWhatToDo)
 {
     const TempDirectory directory;
@@ -300,6 +368,9 @@ TEST(CommandLine, ProgramToolPrintsOrRefuses)
     EXPECT_EQ(run({KBUFFER_PROGRAM_TOOL, "--layout", "rgbz", "--k", "3", "--out", file}).out, "");
     std::ifstream stream(file);
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), good.out);
+
+    EXPECT_EQ(run({KBUFFER_PROGRAM_TOOL, "--layout", "rgbz", "--k", "3", "--out", "-"}).out,
+              good.out);
 
     expect_refused(run({KBUFFER_PROGRAM_TOOL, "--k", "0"}), "kbuffer-program", "k is 0");
     expect_refused(run({KBUFFER_PROGRAM_TOOL, "--k", "129"}), "kbuffer-program", "1 to 128");

@@ -10,8 +10,8 @@
 // ALPHA below 0: that of the vertices. DEPTH_FORMAT: 32f, 24 or 16. SAMPLES: 0 is no multisampling.
 
 #include "context.hpp"
-#include "image.hpp"
 #include "mesh_buffers.hpp"
+#include "output_file.hpp"
 #include "scene.hpp"
 
 #include <fmt/format.h>

@@ -153,4 +153,15 @@ TEST(Spread, InterpolatesBetweenRanks)
     EXPECT_EQ(kb::spread_of({}).median, 0.0);
 }
 
+TEST(Spread, OneMeasurementHasNoPercentiles)
+{
+    const double values[] = {30.0, 10.0, 20.0};
+    EXPECT_EQ(describe(kb::spread_of(values)), "20.00 ms (5 % 11.00, 95 % 29.00, 3 times)");
+    EXPECT_EQ(describe(kb::spread_of(values), "sorting 1.00"),
+              "20.00 ms (5 % 11.00, 95 % 29.00, 3 times; sorting 1.00)");
+    EXPECT_EQ(describe(kb::spread_of(std::span(values, 1))), "30.00 ms");
+    EXPECT_EQ(describe(kb::spread_of(std::span(values, 1)), "sorting 1.00"),
+              "30.00 ms (sorting 1.00)");
+}
+
 } // namespace

@@ -481,4 +481,34 @@ TEST(VolumeCommand, CellsWithoutVolumeChangeNoBit)
     }
 }
 
+TEST(VolumeCommand, OutputsGoWhereTheirNamesLead)
+{
+    const TempDirectory directory;
+    const auto environment = mesa_environment(patched_prefix());
+    const std::vector<std::string> command{KBUFFER_VOLUME, "--size", "16x16",
+                                           "--cubes",      "2",      "--no-disorder"};
+    for (const char *name : {"-", "/dev/stdout"}) {
+        const auto printed = run(with(command, {"--json", name}), environment);
+        EXPECT_EQ(printed.status, 0) << printed.err;
+        EXPECT_EQ(printed.out.find("{\n"), 0U) << printed.out;
+        EXPECT_EQ(printed.out.substr(printed.out.size() - 3), "\n}\n");
+        EXPECT_NE(printed.err.find("geometry pass"), std::string::npos) << printed.err;
+    }
+    expect_command_refused(with(command, {"--json", "/dev/full"}), "volume",
+                           "/dev/full: No space left on device");
+    expect_command_refused(with(command, {"--json", directory / "out.csv"}), "volume",
+                           "it is a .json file");
+    expect_command_refused(with(command, {"--out", directory / "out.jpg"}), "volume",
+                           "it is a .png file");
+    EXPECT_EQ(directory.file_count(), 0U);
+}
+
+TEST(VolumeCommand, OneFrameHasNoPercentiles)
+{
+    const auto result = run({KBUFFER_VOLUME, "--size", "16x16", "--cubes", "2", "--no-disorder"},
+                            mesa_environment(patched_prefix()));
+    EXPECT_EQ(result.out.find("95 %"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(" ms (sorting "), std::string::npos) << result.out;
+}
+
 } // namespace

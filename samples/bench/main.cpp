@@ -22,12 +22,8 @@ int main(int argc, char **argv)
     if (options.worker)
         return kb::bench::work();
 
-    std::vector<std::filesystem::path> outputs{options.out};
-    if (!options.pictures.empty())
-        outputs.push_back(options.pictures / "picture.png");
-    for (const auto &output : outputs)
-        if (const auto writable = kb::bench::prepare_output(output); !writable)
-            return kb::fail(app, writable.error(), kb::exit_bad_input);
+    if (const auto writable = kb::bench::prepare_outputs(options.out, options.pictures); !writable)
+        return kb::fail(app, writable.error(), kb::exit_bad_input);
     try {
         const kb::bench::Study study = kb::bench::run_study(options);
         fmt::print("{}", kb::bench::to_table(study.rows));
@@ -40,5 +36,5 @@ int main(int argc, char **argv)
     } catch (const std::exception &error) {
         return kb::fail(app, {error.what()}, kb::exit_lacking);
     }
-    return 0;
+    return kb::finish(app);
 }

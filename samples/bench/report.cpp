@@ -2,13 +2,12 @@
 
 #include "report.hpp"
 
+#include "output_file.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-
-#include <unistd.h>
+#include <vector>
 
 namespace kb::bench
 {
@@ -69,17 +68,19 @@ std::string to_table(std::span<const Row> rows)
     return table;
 }
 
-Status prepare_output(const std::filesystem::path &path)
+Status prepare_outputs(const std::filesystem::path &results, const std::filesystem::path &pictures)
 {
-    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error))
-        return Error{fmt::format("cannot write {}: it is a directory", path.string())};
-    std::filesystem::create_directories(folder, error);
-    if (error || access(folder.c_str(), W_OK) != 0)
-        return Error{fmt::format("cannot write {}: {}", path.string(),
-                                 error ? error.message() : std::strerror(errno))};
-    return ok;
+    std::vector<OutputFile> files{{results, ".json"}};
+    if (!pictures.empty())
+        files.push_back({pictures / "picture.png", ".png"});
+    for (const OutputFile &output : files) {
+        std::error_code code;
+        if (output.file.has_parent_path())
+            std::filesystem::create_directories(output.file.parent_path(), code);
+        if (code)
+            return Error{fmt::format("cannot write {}: {}", output.file.string(), code.message())};
+    }
+    return kb::prepare_outputs(files);
 }
 
 Status write_json(const std::filesystem::path &path, const nlohmann::json &document)

@@ -39,8 +39,9 @@ nlohmann::json to_json(const nlohmann::json &machine, std::span<const Row> rows)
 /// framebuffer fetch with the same k.
 std::string to_table(std::span<const Row> rows);
 
-/// Finds out before any work whether the file can be written; makes its folder.
-Status prepare_output(const std::filesystem::path &path);
+/// Finds out before any work whether the results, and pictures of any methods (none if empty), can
+/// be written; makes their folders.
+Status prepare_outputs(const std::filesystem::path &results, const std::filesystem::path &pictures);
 
 Status write_json(const std::filesystem::path &path, const nlohmann::json &document);
 

@@ -77,13 +77,13 @@ void print_report(const IsosurfaceOptions &options, const Source &source,
             : fmt::format("particles: {}", source.points.size());
     say(fmt::format("{}; {}; iso-values: {}", medium, source.field_description,
                     list_values(report, source, [](const IsoValue &) { return true; })));
-    const Spread spread = spread_of(report.times);
     const std::size_t values = report.iso_values.size();
-    say(fmt::format("isosurface k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), 1 "
-                    "geometry pass, {} {}, {} iso-value{}, {} bytes per pixel",
-                    options.k, options.size.width, options.size.height, spread.median, spread.p5,
-                    spread.p95, report.times.size(), report.primitives, report.primitive, values,
-                    values == 1 ? "" : "s", report.bytes_per_pixel));
+    say(fmt::format(
+        "isosurface k={} {}x{}: {}, 1 geometry pass, {} {}, {} iso-value{}, {} bytes per "
+        "pixel",
+        options.k, options.size.width, options.size.height, describe(spread_of(report.times)),
+        report.primitives, report.primitive, values, values == 1 ? "" : "s",
+        report.bytes_per_pixel));
     print_emptiness(source, report);
 }
 

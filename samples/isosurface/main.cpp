@@ -156,6 +156,14 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
         kb::say(disorder ? describe(*disorder, options.k)
                          : "disorder: not measured: " +
                                (work.reason().empty() ? disorder.error().message : work.reason()));
+        if (disorder)
+            report.disorder = std::move(*disorder);
+    }
+    if (!options.json.empty()) {
+        kb::IsosurfaceOptions drawn = options;
+        drawn.camera = seen;
+        if (auto written = kb::write_report(options.json, drawn, source, report); !written)
+            return bad_input(written.error());
     }
     if (kb::LongWork::interrupted())
         return Failure{{}, kb::exit_interrupted};
@@ -180,9 +188,9 @@ int main(int argc, char **argv)
     kb::declare_options(app, options);
     if (const auto status = kb::parse_command_line(app, argc, argv))
         return *status;
-    for (const auto &checked :
-         {kb::check_options(options), kb::check_writable(options.outputs),
-          kb::check_writable(options.surfaces), kb::check_writable(options.json)}) {
+    for (const auto &checked : {kb::check_options(options),
+                                kb::prepare_outputs(options.outputs, {{options.surfaces, ".pfm"},
+                                                                      {options.json, ".json"}})}) {
         if (!checked)
             return kb::fail(app, checked.error(), kb::exit_bad_input);
     }
@@ -207,5 +215,5 @@ int main(int argc, char **argv)
         return kb::fail(app, kb::Error{"there is not enough memory for --size and --k"},
                         kb::exit_lacking);
     }
-    return 0;
+    return kb::finish(app);
 }

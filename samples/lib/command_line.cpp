@@ -31,8 +31,8 @@ std::optional<int> parse_command_line(CLI::App &app, int argc, const char *const
         fmt::print("{}\n", version_line.what());
         return 0;
     } catch (const CLI::CallForHelp &) {
-        fmt::print("{}", app.help());
-        return 0;
+        std::fputs(app.help().c_str(), stdout);
+        return finish(app);
     } catch (const CLI::ParseError &error) {
         return fail(app, Error{fmt::format("{} (try --help)", error.what())}, exit_bad_input);
     }
@@ -44,8 +44,16 @@ int fail(const CLI::App &app, const Error &error, int status)
     std::string line = error.message;
     for (char &c : line)
         c = c == '\n' || c == '\r' ? ' ' : c;
-    fmt::print(stderr, "{}: {}\n", program_name(app), line);
+    std::fputs(fmt::format("{}: {}\n", program_name(app), line).c_str(), stderr);
     return status;
+}
+
+int finish(const CLI::App &app)
+{
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
+        return 0;
+    return fail(app, Error{"cannot write all that was to be printed to the standard output"},
+                exit_lacking);
 }
 
 std::string check_number(const std::string &text, double low, double high)
@@ -150,8 +158,10 @@ CLI::Option *add_json_option(CLI::App &app, std::filesystem::path &file)
 CLI::Option *add_context_option(CLI::App &app, std::string &kind)
 {
     return app
-        .add_option("--context", kind,
-                    "osmesa (in memory), egl (surfaceless) or glfw (a window with orbit camera)")
+        .add_option(
+            "--context", kind,
+            "osmesa (in memory), egl (surfaceless) or glfw (a window: drag with the left button "
+            "or use the arrow keys to turn, the wheel to come nearer, Escape to close)")
         ->check(CLI::IsMember({"osmesa", "egl", "glfw"}))
         ->type_name("KIND")
         ->capture_default_str();

@@ -29,6 +29,9 @@ std::optional<int> parse_command_line(CLI::App &app, int argc, const char *const
 /// Prints "program: message" on the standard error output; returns the status.
 int fail(const CLI::App &app, const Error &error, int status);
 
+/// The exit status of a program that has done its work: 0 if what it printed has arrived.
+int finish(const CLI::App &app);
+
 /// A check for add_option: empty, or what is wrong. Unlike CLI::Range it refuses NaN.
 std::string check_number(const std::string &text, double low, double high);
 

@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <span>
 #include <vector>
 
 namespace kb
@@ -39,9 +38,6 @@ using ImageF = Image<float>;
 
 /// Rounds to the nearest of 256 steps, as GL does; what is not a number becomes 0.
 ImageRgba8 to_rgba8(const ImageRgbaF &image);
-
-/// Files are written beside their place and then renamed: there is a whole file or none.
-Status write_file(const std::filesystem::path &path, std::span<const std::byte> bytes);
 
 Status write_png(const std::filesystem::path &path, const ImageRgba8 &image);
 Result<ImageRgba8> read_png(const std::filesystem::path &path);

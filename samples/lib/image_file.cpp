@@ -1,53 +1,22 @@
 // SPDX-License-Identifier: MIT
 
 #include "image.hpp"
+#include "output_file.hpp"
 
 #include <fmt/format.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <bit>
-#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <span>
 #include <sstream>
 
 namespace kb
 {
 
 static_assert(std::endian::native == std::endian::little, "PFM files are written as memory has it");
-
-Status write_file(const std::filesystem::path &path, std::span<const std::byte> bytes)
-{
-    const auto fail = [&path](const std::string &why) {
-        return Error{fmt::format("cannot write {}: {}", path.string(), why)};
-    };
-    std::error_code code;
-    if (path.empty() || std::filesystem::is_directory(path, code))
-        return fail("it is not the name of a file");
-
-    auto part = path;
-    part += fmt::format(".{}.part", getpid());
-    std::ofstream file(part, std::ios::binary);
-    if (!file)
-        return fail(std::strerror(errno));
-    file.write(reinterpret_cast<const char *>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) {
-        const std::string why = std::strerror(errno);
-        std::filesystem::remove(part, code);
-        return fail(why);
-    }
-    std::filesystem::rename(part, path, code);
-    if (code) {
-        const std::string why = code.message();
-        std::filesystem::remove(part, code);
-        return fail(why);
-    }
-    return ok;
-}
 
 static Result<std::vector<std::byte>> read_file(const std::filesystem::path &path)
 {

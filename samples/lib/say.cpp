@@ -2,6 +2,7 @@
 
 #include "say.hpp"
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <string>
@@ -12,8 +13,11 @@ namespace kb
 void say(std::string_view line)
 {
     const std::string text = std::string(line) + '\n';
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    std::fflush(stdout);
+    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
+        return;
+    // Nobody reads it any more, so it goes nowhere; a full disk stays an error of the stream.
+    if (errno == EPIPE && !std::freopen("/dev/null", "w", stdout))
+        std::clearerr(stdout);
 }
 
 void outlive_readers()

@@ -2,6 +2,8 @@
 
 #include "timing.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -21,7 +23,19 @@ Spread spread_of(std::span<const double> values)
         const double part = rank - static_cast<double>(below);
         return sorted[below] + part * (sorted[above] - sorted[below]);
     };
-    return {percentile(0.5), percentile(0.05), percentile(0.95)};
+    return {percentile(0.5), percentile(0.05), percentile(0.95), values.size()};
+}
+
+std::string describe(const Spread &milliseconds, std::string_view also)
+{
+    std::string more;
+    if (milliseconds.count > 1)
+        more = fmt::format("5 % {:.2f}, 95 % {:.2f}, {} times", milliseconds.p5, milliseconds.p95,
+                           milliseconds.count);
+    if (!also.empty())
+        more += fmt::format("{}{}", more.empty() ? "" : "; ", also);
+    return fmt::format("{:.2f} ms{}", milliseconds.median,
+                       more.empty() ? "" : fmt::format(" ({})", more));
 }
 
 double milliseconds(const Gl &gl, const std::function<void()> &work)

@@ -233,11 +233,10 @@ std::optional<Failure> run(kb::PeelingOptions options, const kb::SceneMesh &mesh
     kb::print_notes("peeling", mesh);
     kb::print_emptiness("peeling", picture, background,
                         kb::alpha_range(mesh.mesh, options.scene.alpha));
-    const kb::Spread spread = kb::spread_of(times);
-    fmt::print("peeling k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), {} geometry "
-               "pass{}, {} triangles, {} layers, {} fragments, {} bytes per pixel\n",
+    fmt::print("peeling k={} {}x{}: {}, {} geometry pass{}, {} triangles, {} layers, {} "
+               "fragments, {} bytes per pixel\n",
                options.layers.count, options.layers.size.width, options.layers.size.height,
-               spread.median, spread.p5, spread.p95, times.size(), renderer->passes(),
+               describe(kb::spread_of(times)), renderer->passes(),
                renderer->passes() == 1 ? "" : "es", renderer->triangle_count(), count.deepest,
                count.fragments, renderer->peeling().bytes_per_pixel());
 
@@ -267,7 +266,7 @@ int main(int argc, char **argv)
         return kb::fail(app, mesh.error(), kb::exit_bad_input);
     const kb::LayerFiles files(options.directory, options.floats);
     for (const auto &writable :
-         {files.check(), kb::check_writable(options.outputs), kb::check_writable(options.json)}) {
+         {files.check(), kb::prepare_outputs(options.outputs, {{options.json, ".json"}})}) {
         if (!writable)
             return kb::fail(app, writable.error(), kb::exit_bad_input);
     }
@@ -279,5 +278,5 @@ int main(int argc, char **argv)
         return kb::fail(app, kb::Error{"there is not enough memory for --size and --k"},
                         kb::exit_lacking);
     }
-    return 0;
+    return kb::finish(app);
 }

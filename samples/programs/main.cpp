@@ -3,18 +3,16 @@
 // Prints a k-buffer program for ProgramStringARB(GL_KBUFFER_PROGRAM_MESA, ...).
 
 #include "command_line.hpp"
-#include "image.hpp"
 #include "kbuffer_program.hpp"
+#include "output_file.hpp"
 
-#include <fmt/format.h>
-
-#include <cstdio>
+#include <array>
 
 int main(int argc, char **argv)
 {
     std::string layout_name = "packed";
     int k = 8;
-    std::string out;
+    std::filesystem::path out = "-";
 
     CLI::App app("Prints the program that keeps the k nearest fragments of each pixel, nearest "
                  "first.\nLayouts of an entry: rgbz (red, green, blue, depth), packed (two "
@@ -30,8 +28,9 @@ int main(int argc, char **argv)
                    "depth4")
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--out", out, "Write to this file, not to the standard output")
-        ->type_name("FILE");
+    app.add_option("--out", out, "Write to this file; -: to the standard output")
+        ->type_name("FILE")
+        ->capture_default_str();
     if (const auto status = kb::parse_command_line(app, argc, argv))
         return *status;
 
@@ -41,11 +40,9 @@ int main(int argc, char **argv)
     const auto program = kb::make_insertion_program(*layout, k);
     if (!program)
         return kb::fail(app, program.error(), kb::exit_bad_input);
-    if (out.empty()) {
-        fmt::print("{}", *program);
-        return std::fflush(stdout) == 0 ? 0 : kb::exit_lacking;
-    }
+    if (auto writable = kb::prepare_outputs(std::array{kb::OutputFile{out, ""}}); !writable)
+        return kb::fail(app, writable.error(), kb::exit_bad_input);
     if (auto written = kb::write_file(out, std::as_bytes(std::span(*program))); !written)
         return kb::fail(app, written.error(), kb::exit_bad_input);
-    return 0;
+    return kb::finish(app);
 }

@@ -158,11 +158,9 @@ std::optional<Failure> run(Options options, const kb::SceneMesh &mesh, kb::Entry
     kb::print_emptiness("transparency", image, kb::MethodOptions{}.background,
                         kb::alpha_range(mesh.mesh, options.scene.alpha));
     fmt::print("{}\n", kb::describe(mesh, options.scene));
-    const kb::Spread spread = kb::spread_of(times);
-    fmt::print("{} k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times), {} geometry "
-               "pass{}, {} triangles, {} bytes per pixel\n",
-               options.method, options.k, options.size.width, options.size.height, spread.median,
-               spread.p5, spread.p95, times.size(), (*method)->geometry_passes(),
+    fmt::print("{} k={} {}x{}: {}, {} geometry pass{}, {} triangles, {} bytes per pixel\n",
+               options.method, options.k, options.size.width, options.size.height,
+               describe(kb::spread_of(times)), (*method)->geometry_passes(),
                (*method)->geometry_passes() == 1 ? "" : "es", scene.triangle_count(),
                (*method)->bytes_per_pixel());
 
@@ -193,11 +191,8 @@ int main(int argc, char **argv)
     const auto mesh = kb::make_mesh(options.scene);
     if (!mesh)
         return kb::fail(app, mesh.error(), kb::exit_bad_input);
-    for (const auto &writable :
-         {kb::check_writable(options.outputs), kb::check_writable(options.json)}) {
-        if (!writable)
-            return kb::fail(app, writable.error(), kb::exit_bad_input);
-    }
+    if (auto writable = kb::prepare_outputs(options.outputs, {{options.json, ".json"}}); !writable)
+        return kb::fail(app, writable.error(), kb::exit_bad_input);
     settle_alpha(options, *layout, mesh->mesh);
 
     try {
@@ -207,5 +202,5 @@ int main(int argc, char **argv)
         return kb::fail(app, kb::Error{"there is not enough memory for --size and --k"},
                         kb::exit_lacking);
     }
-    return 0;
+    return kb::finish(app);
 }

@@ -3,45 +3,27 @@
 #include "output.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace kb
 {
 
-Status check_writable(const std::filesystem::path &file)
+Status prepare_outputs(const OutputPaths &paths, std::vector<OutputFile> others)
 {
-    if (file.empty())
-        return ok;
-    std::error_code code;
-    if (std::filesystem::is_directory(file, code))
-        return Error{fmt::format("cannot write {}: it is a directory", file.string())};
-    const auto directory = file.has_parent_path() ? file.parent_path() : ".";
-    if (!std::filesystem::is_directory(directory, code))
-        return Error{fmt::format("cannot write {}: there is no directory {}", file.string(),
-                                 directory.string())};
-    if (access(directory.c_str(), W_OK) != 0)
-        return Error{fmt::format("cannot write {}: {}", file.string(), std::strerror(errno))};
-    return ok;
-}
-
-Status check_writable(const OutputPaths &paths)
-{
-    for (const auto &file : {paths.picture, paths.floats}) {
-        if (auto checked = check_writable(file); !checked)
-            return checked;
-    }
+    others.push_back({paths.picture, ".png"});
+    others.push_back({paths.floats, ".pfm"});
     if (!paths.layers.empty()) {
         std::error_code code;
         std::filesystem::create_directories(paths.layers, code);
         if (code)
             return Error{fmt::format("cannot make the directory {}: {}", paths.layers.string(),
                                      code.message())};
-        return check_writable(paths.layers / "layer-00.png");
+        others.push_back({paths.layers / "layer-00.png", ".png"});
     }
-    return ok;
+    return prepare_outputs(std::span<const OutputFile>(others));
 }
 
 Status write_outputs(const OutputPaths &paths, const ImageRgbaF &image,

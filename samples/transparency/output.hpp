@@ -3,8 +3,10 @@
 #pragma once
 
 #include "method.hpp"
+#include "output_file.hpp"
 
 #include <filesystem>
+#include <vector>
 
 namespace kb
 {
@@ -18,11 +20,9 @@ struct OutputPaths {
     bool empty() const { return picture.empty() && floats.empty() && layers.empty(); }
 };
 
-/// Finds out before any work whether a file can be written; an empty path is none.
-Status check_writable(const std::filesystem::path &file);
-
-/// Finds out before any work whether all of them can be written. Makes the directory of the layers.
-Status check_writable(const OutputPaths &paths);
+/// Finds out before any work whether all of them can be written, and others. Makes the directory
+/// of the layers.
+Status prepare_outputs(const OutputPaths &paths, std::vector<OutputFile> others = {});
 
 /// Layers are written as layer-NN.png (RGBA), layer-NN.pfm (the same color as floats) and
 /// layer-NN-depth.pfm.

@@ -180,10 +180,10 @@ int main(int argc, char **argv)
     if (const auto status = kb::parse_command_line(app, argc, argv))
         return *status;
     kb::outlive_readers();
-    for (const auto &file : {options.picture, options.floats, options.json}) {
-        if (auto writable = kb::check_writable(file); !writable)
-            return kb::fail(app, writable.error(), kb::exit_bad_input);
-    }
+    if (auto writable =
+            kb::prepare_outputs({options.picture, options.floats, {}}, {{options.json, ".json"}});
+        !writable)
+        return kb::fail(app, writable.error(), kb::exit_bad_input);
 
     try {
         if (options.list_fields) {
@@ -204,5 +204,5 @@ int main(int argc, char **argv)
         return kb::fail(app, kb::Error{"there is not enough memory for --grid, --size and --k"},
                         kb::exit_lacking);
     }
-    return 0;
+    return kb::finish(app);
 }

@@ -2,7 +2,7 @@
 
 #include "report_json.hpp"
 
-#include "image.hpp"
+#include "output_file.hpp"
 
 #include <nlohmann/json.hpp>
 

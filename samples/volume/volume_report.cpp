@@ -111,12 +111,12 @@ void print_report(const VolumeOptions &options, const VolumeScene &scene,
                         report.cluster_time));
     const Spread frame = spread(report, whole);
     const Spread sort = spread(report, [](const VolumeReport::Frame &f) { return f.sort; });
-    say(fmt::format("volume {} k={} {}x{}: {:.2f} ms (5 % {:.2f}, 95 % {:.2f}, {} times; sorting "
-                    "{:.2f}), {} geometry pass{}, {} of {} faces drawn, {} bytes per pixel",
-                    options.exact ? "exact" : "kbuffer", options.k, options.size.width,
-                    options.size.height, frame.median, frame.p5, frame.p95, report.frames.size(),
-                    sort.median, report.passes, report.passes == 1 ? "" : "es", report.drawn,
-                    report.faces, report.bytes_per_pixel));
+    say(fmt::format(
+        "volume {} k={} {}x{}: {}, {} geometry pass{}, {} of {} faces drawn, {} bytes per "
+        "pixel",
+        options.exact ? "exact" : "kbuffer", options.k, options.size.width, options.size.height,
+        describe(frame, fmt::format("sorting {:.2f}", sort.median)), report.passes,
+        report.passes == 1 ? "" : "es", report.drawn, report.faces, report.bytes_per_pixel));
     if (report.segments)
         say(describe(*report.segments, options.tolerance));
     if (report.covered == 0)

@@ -9,7 +9,7 @@
 #include "command_line.hpp"
 #include "context.hpp"
 #include "gl_scene.hpp"
-#include "image.hpp"
+#include "output_file.hpp"
 
 #include <fmt/format.h>
 

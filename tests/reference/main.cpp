@@ -6,8 +6,8 @@
 #include "check.hpp"
 #include "command_line.hpp"
 #include "context.hpp"
-#include "image.hpp"
 #include "invariances.hpp"
+#include "output_file.hpp"
 #include "random_scene.hpp"
 #include "shrink.hpp"
 
