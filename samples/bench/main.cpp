@@ -9,6 +9,7 @@
 #include "worker.hpp"
 #include "worker_process.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 int main(int argc, char **argv)

@@ -5,6 +5,7 @@
 #include "methods.hpp"
 #include "study_scene.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

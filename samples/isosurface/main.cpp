@@ -17,6 +17,7 @@
 #include "source.hpp"
 #include "timing.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -4,6 +4,8 @@
 
 #include "order_option.hpp"
 
+#include <CLI/CLI.hpp>
+
 namespace kb
 {
 

@@ -5,6 +5,7 @@
 #include "color.hpp"
 #include "version.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <charconv>

@@ -8,12 +8,20 @@
 #include "camera.hpp"
 #include "result.hpp"
 
-#include <CLI/CLI.hpp>
+#include <glm/vec3.hpp>
 
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+
+// CLI11's header takes longer to compile than most files that only pass options on: who declares or
+// parses options includes it.
+namespace CLI
+{
+class App;
+class Option;
+} // namespace CLI
 
 namespace kb
 {

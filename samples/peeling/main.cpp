@@ -18,6 +18,7 @@
 #include "scene.hpp"
 #include "timing.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

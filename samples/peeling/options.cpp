@@ -2,6 +2,7 @@
 
 #include "options.hpp"
 
+#include <CLI/CLI.hpp>
 #include <map>
 #include <vector>
 

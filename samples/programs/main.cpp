@@ -6,7 +6,11 @@
 #include "kbuffer_program.hpp"
 #include "output_file.hpp"
 
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
 #include <array>
+#include <cstdio>
 
 int main(int argc, char **argv)
 {

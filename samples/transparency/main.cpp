@@ -16,6 +16,7 @@
 #include "scene_options.hpp"
 #include "timing.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

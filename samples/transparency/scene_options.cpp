@@ -4,6 +4,8 @@
 
 #include "scene.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 
 namespace kb

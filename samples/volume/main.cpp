@@ -24,6 +24,9 @@
 #include "volume_report.hpp"
 #include "volume_scene.hpp"
 
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
 #include <new>
 
 namespace

@@ -2,6 +2,8 @@
 
 #include "order_option.hpp"
 
+#include <CLI/CLI.hpp>
+
 namespace kb
 {
 

@@ -5,6 +5,7 @@
 #include "order_option.hpp"
 #include "volume_program.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace kb

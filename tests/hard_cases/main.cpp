@@ -11,6 +11,7 @@
 #include "gl_scene.hpp"
 #include "output_file.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

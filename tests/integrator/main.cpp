@@ -6,6 +6,7 @@
 
 #include "command_line.hpp"
 
+#include <CLI/CLI.hpp>
 #include <string>
 
 namespace

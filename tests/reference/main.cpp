@@ -11,6 +11,7 @@
 #include "random_scene.hpp"
 #include "shrink.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <sys/mman.h>

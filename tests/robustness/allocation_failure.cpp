@@ -12,6 +12,7 @@
 #include "frame.hpp"
 #include "shared_library.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

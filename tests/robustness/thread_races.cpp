@@ -11,6 +11,7 @@
 #include "context.hpp"
 #include "frame.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <array>
