@@ -41,6 +41,7 @@ complain() {
 }
 
 die() {
+    stop_telling
     complain "$@"
     exit 1
 }
@@ -70,6 +71,7 @@ trap 'on_unexpected_error "$LINENO" "${BASH_SOURCE[0]}" "$BASH_COMMAND"' ERR
 temporaries=()
 cleanup() {
     local t
+    stop_telling
     for t in ${temporaries[@]+"${temporaries[@]}"}; do rm -rf "$t"; done
 }
 trap cleanup EXIT
@@ -132,32 +134,106 @@ die_with_log() { # WHAT LOG
 }
 
 logged() { # WHAT LOG COMMAND...: quiet unless it fails
-    local what=$1 log=$logs/$2
+    local what=$1 log=$logs/$2 status=0
     shift 2
     mkdir -p "$logs"
-    "$@" >"$log" 2>&1 9>&- || die_with_log "$what" "$log"
+    keep_telling "$what"
+    "$@" >"$log" 2>&1 9>&- || status=$?
+    stop_telling
+    [ "$status" -eq 0 ] || die_with_log "$what" "$log"
 }
 
-# Reads ninja's output: one line that moves on a terminal, else a line every tenth of the way, but
-# not within two seconds of the last, and after each half minute: a log stays readable and still
-# shows that something happens.
+# What takes long shows that it goes on: on a terminal by one line that moves, else by a line now
+# and then, so that nobody waits for 15 seconds without one and a log stays readable.
+telling_interval=10
+[ ! -t 1 ] || telling_interval=1
+
+# tell TEXT: the line
+tell() {
+    local width
+    if [ -t 1 ]; then
+        width=$(tput cols 2>/dev/null || echo 80)
+        printf '\r\033[K    %s' "${1:0:$((width - 5))}"
+    else
+        note "$1"
+    fi
+}
+
+# Takes the moving line away again.
+end_telling() { [ ! -t 1 ] || printf '\r\033[K'; }
+
+# keep_telling WHAT: until stop_telling, or until the command ends
+keep_telling() {
+    local start=$SECONDS
+    stop_telling
+    # The sleep may outlive the loop, but must not hold the output open.
+    while sleep "$telling_interval" >/dev/null 2>&1; do
+        tell "$1: $((SECONDS - start)) s"
+    done 9>&- &
+    teller=$!
+}
+
+teller=''
+stop_telling() {
+    [ -n "$teller" ] || return 0
+    kill "$teller" 2>/dev/null || true
+    wait "$teller" 2>/dev/null || true
+    teller=''
+    end_telling
+}
+
+# next_line: reads into `line`, as `read` does; waits for at most a second, then leaves it empty
+next_line() {
+    local status=0
+    IFS= read -r -t 1 line || status=$?
+    line=$unfinished_line$line unfinished_line=''
+    if [ "$status" -gt 128 ]; then
+        unfinished_line=$line line=''
+        return 0
+    fi
+    [ "$status" -eq 0 ] || [ -n "$line" ]
+}
+unfinished_line=''
+
+# Reads ninja's output, and tells of it at each tenth of the way, but not twice within five seconds.
 show_progress() { # WHAT
-    local line step total shown=-1 start=$SECONDS last=$SECONDS width terminal=
-    [ -t 1 ] && terminal=yes
-    width=$(tput cols 2>/dev/null || echo 80)
-    while IFS= read -r line; do
-        [[ $line =~ ^\[([0-9]+)/([0-9]+)\]\ (.*) ]] || continue
-        step=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
-        if [ -n "$terminal" ]; then
-            line="    $1: $step/$total, $((SECONDS - start)) s  ${BASH_REMATCH[3]}"
-            printf '\r\033[K%s' "${line:0:$((width - 1))}"
-        elif { [ $((step * 10 / total)) -gt $shown ] && [ $((SECONDS - last)) -ge 2 ]; } ||
-            [ $((SECONDS - last)) -ge 30 ] || [ "$step" -eq "$total" ]; then
-            shown=$((step * 10 / total)) last=$SECONDS
-            note "$1: $step/$total, $((SECONDS - start)) s"
+    local line text='' step=0 total=0 shown=0 start=$SECONDS last=$SECONDS
+    while next_line; do
+        if [[ $line =~ ^\[([0-9]+)/([0-9]+)\]\ (.*) ]]; then
+            step=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]} text=${BASH_REMATCH[3]}
+        fi
+        if [ -t 1 ]; then
+            [ "$total" -eq 0 ] || tell "$1: $step/$total, $((SECONDS - start)) s  $text"
+        elif [ $((SECONDS - last)) -ge "$telling_interval" ] ||
+            { [ "$total" -gt 0 ] && [ $((step * 10 / total)) -gt $shown ] &&
+                { [ $((SECONDS - last)) -ge 5 ] || [ "$step" -eq "$total" ]; }; }; then
+            [ "$total" -eq 0 ] || shown=$((step * 10 / total))
+            last=$SECONDS
+            tell "$1: $([ "$total" -eq 0 ] || echo "$step/$total, ")$((SECONDS - start)) s"
         fi
     done
-    [ -z "$terminal" ] || printf '\r\033[K'
+    end_telling
+}
+
+# Reads the output of tests: its last line moves on a terminal, else it is shown now and then; what is
+# not as it should be is shown always.
+show_lines() {
+    local line text='' start=$SECONDS last=$SECONDS
+    while next_line; do
+        if [[ $line =~ (not ok|FAIL|[Ff]ailed|error|skip) && ! $line =~ \ passed,\ 0\ failed ]]; then
+            end_telling
+            note "$line"
+            last=$SECONDS
+        elif [ -n "$line" ]; then
+            text=$line
+            [ ! -t 1 ] || tell "$text"
+        fi
+        if [ ! -t 1 ] && [ $((SECONDS - last)) -ge "$telling_interval" ]; then
+            tell "$((SECONDS - start)) s${text:+: $text}"
+            last=$SECONDS
+        fi
+    done
+    end_telling
 }
 
 run_ninja() { # WHAT LOG BUILD_DIR [TARGET...]

@@ -16,7 +16,10 @@ newest_llvm() {
 
 # Paths below build/ are made relative in what ccache compares, and all trees lie and are built at
 # the same depth, so trees of one clone and clones anywhere share results. The cache is the user's.
-export CCACHE_BASEDIR=$build CCACHE_NOHASHDIR=1
+# What a file includes is taken from the compiler's own list after it has compiled the file (-MD),
+# instead of from a run of the preprocessor before: a build with an empty cache needs a quarter less
+# time of the processor.
+export CCACHE_BASEDIR=$build CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1
 
 # write_native_file [NAME COMMAND...]: the compilers of what is configured from here on: GCC through
 # ccache, else what the command makes of gcc and g++
@@ -141,6 +144,9 @@ build_mesa() {
     note "$what is in ${prefix#"$root"/} ($((SECONDS - start)) s)"
 }
 
+# What ninja makes of the project; nothing named is all of it.
+project_targets=()
+
 # The samples, tools and unit tests, against build/prefix
 build_project() {
     build_project_in project prefix --buildtype=release
@@ -161,6 +167,7 @@ build_project_in() { # NAME PREFIX_NAME OPTION...
     export PKG_CONFIG_PATH=$prefix/$libdir/pkgconfig
     configure "the $name" "$root" "$build/$name" -Dprefix="$prefix" --libdir="$libdir" "$@"
     say "Building the $name"
-    run_ninja "the $name" "$name-ninja.log" "$build/$name"
+    run_ninja "the $name" "$name-ninja.log" "$build/$name" \
+        ${project_targets[@]+"${project_targets[@]}"}
     note "the $name is in build/$name ($((SECONDS - start)) s)"
 }

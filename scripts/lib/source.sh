@@ -79,7 +79,7 @@ mesa_from_file() { # FOLDER
 
 # The tarball, verified, in build/download.
 fetch_mesa() {
-    local folder origin origins="mesa_from_distribution mesa_from_upstream" wrong='' sum
+    local folder origin origins="mesa_from_distribution mesa_from_upstream" fetched wrong='' sum
     if [ -f "$mesa_tarball" ]; then
         [ "$(sha256_of "$mesa_tarball")" != "$mesa_sha256" ] || return 0
         warn "$mesa_tarball has a wrong checksum: fetching it again"
@@ -88,7 +88,11 @@ fetch_mesa() {
     [ -z "${KBUFFER_MESA_TARBALL:-}" ] || origins=mesa_from_file
     for origin in $origins; do
         make_temporary folder
-        "$origin" "$folder" || continue
+        fetched=yes
+        keep_telling "fetching"
+        "$origin" "$folder" || fetched=''
+        stop_telling
+        [ -n "$fetched" ] || continue
         sum=$(sha256_of "$folder/mesa.tar.xz")
         if [ "$sum" = "$mesa_sha256" ]; then
             mkdir -p "$(dirname "$mesa_tarball")"

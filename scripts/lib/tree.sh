@@ -39,6 +39,7 @@ unpack_tree() {
     fetch_mesa
     say "Unpacking Mesa $mesa_version into ${1#"$root"/}"
     make_temporary folder
+    keep_telling "unpacking"
     tar -C "$folder" --strip-components=1 -xf "$mesa_tarball" 2>"$folder/.tar.log" ||
         die "Mesa cannot be unpacked: $(head -n 1 "$folder/.tar.log")" \
             "If the disk is full, free some space, then run $command_name again."
@@ -50,6 +51,7 @@ unpack_tree() {
     committed_by_script git -C "$folder" commit -q --no-gpg-sign -m "Mesa $mesa_version"
     git -C "$folder" tag upstream
     printf '/build*/\n' >"$folder/.git/info/exclude"
+    stop_telling
     rm -rf "$1"
     mv "$folder" "$1"
 }

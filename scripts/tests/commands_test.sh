@@ -30,6 +30,56 @@ test_jobs_must_be_a_number() {
     done
 }
 
+test_build_takes_known_samples() {
+    local names
+    for names in elephant transparency,,peeling , ''; do
+        run 2 scripts/build --samples "$names"
+        prints "transparency peeling volume isosurface"
+        lines 1
+    done
+    absent build
+}
+
+# told_of LINE...: what `show_progress` or `show_lines` makes of them, told of after two seconds
+# without a word
+told_of() {
+    local reader=$1
+    shift
+    run 0 bash -c '. scripts/lib/common.sh; telling_interval=2
+        reader=$1; shift; { printf "%s\n" "$@"; sleep 3; } | $reader' scripts/build "$reader" "$@"
+}
+
+test_long_work_is_told_of_in_silence() {
+    told_of "show_progress Mesa" "[1/9] Compiling"
+    prints "Mesa: 1/9, "
+    told_of "show_lines" "ok 1"
+    prints "s: ok 1"
+    run 0 bash -c '. scripts/lib/common.sh; telling_interval=1
+        keep_telling unpacking; sleep 3; stop_telling; sleep 3; echo end' scripts/build
+    prints "unpacking: "
+    [ "$(tail -n 1 <<<"$output")" = end ] && [ "$(wc -l <<<"$output")" -le 4 ]
+}
+
+test_progress_is_no_line_for_each_step() {
+    local steps=()
+    mapfile -t steps < <(seq -f '[%.0f/300] Compiling' 300)
+    told_of "show_progress Mesa" "${steps[@]}"
+    prints "Mesa: 300/300, "
+    [ "$(wc -l <<<"$output")" -le 3 ]
+    mapfile -t steps < <(seq -f 'ok %.0f' 300)
+    told_of show_lines "${steps[@]:0:150}" "not ok 0" "${steps[@]:150}"
+    prints "not ok 0"
+    [ "$(wc -l <<<"$output")" -le 3 ]
+}
+
+# What was started stops telling when the command ends in the middle of it, and holds no output open.
+test_a_failure_ends_what_was_told() {
+    run 1 bash -c '. scripts/lib/common.sh; telling_interval=60
+        keep_telling unpacking; die "no space"' scripts/build
+    prints "no space"
+    lines 1
+}
+
 test_unknown_suites() {
     run 2 scripts/test --only none
     run 2 scripts/check-fresh woody
