@@ -266,9 +266,8 @@ TEST(LoadTetGrid, AFaultOfAFieldIsNoneOfTheOthers)
     grid.fields[0].values[3] = std::nanf("");
     for (const VtkForm form : all_forms) {
         const bool is_binary = form == VtkForm::binary || form == VtkForm::binary_5;
-        const auto read =
-            kb::parse_tet_grid(vtk_file(grid, form) + "FIELD f 1\na 1 3 char\n" +
-                               (is_binary ? "\x01\x01\x01" : "1 1 1") + '\n');
+        const auto read = kb::parse_tet_grid(vtk_file(grid, form) + "FIELD f 1\na 1 3 char\n" +
+                                             (is_binary ? "\x01\x01\x01" : "1 1 1") + '\n');
         ASSERT_TRUE(read) << read.error().message;
         const auto pressure = kb::find_field(*read, "pressure");
         ASSERT_TRUE(pressure) << pressure.error().message;
