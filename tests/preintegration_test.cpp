@@ -122,12 +122,12 @@ struct Texel {
 Texel texel_at(const PreintegratedTable &table, double mean, double difference)
 {
     constexpr double half = PreintegratedTable::half_difference;
-    const auto [means, differences] = table.size();
+    const kb::TableSize size = table.size(); // With differences from -1 to 1
     const double place = difference / (std::abs(difference) + half) * (1.0 + half);
-    const double row = std::round(0.5 * (place + 1.0) * (differences - 1));
-    const double at = (2.0 * row / (differences - 1) - 1.0) / (1.0 + half);
-    return {static_cast<std::size_t>(row) * static_cast<std::size_t>(means) +
-                static_cast<std::size_t>(std::lround(mean * (means - 1))),
+    const double row = std::round(0.5 * (place + 1.0) * (size.differences - 1));
+    const double at = (2.0 * row / (size.differences - 1) - 1.0) / (1.0 + half);
+    return {static_cast<std::size_t>(row) * static_cast<std::size_t>(size.means) +
+                static_cast<std::size_t>(std::lround(mean * (size.means - 1))),
             half * at / (1.0 - std::abs(at))};
 }
 

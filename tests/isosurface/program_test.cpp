@@ -45,7 +45,7 @@ public:
         }
     }
 
-    Result<Disorder> capture_disorder(const OrbitCamera &, Size) const override
+    Result<Disorder> capture_disorder(const OrbitCamera &, Size, const GoOn &) const override
     {
         return Error{"it draws one fragment by each command"};
     }
