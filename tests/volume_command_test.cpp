@@ -141,7 +141,7 @@ struct BoxFile {
     std::string more_value = {};
     double value_offset = 0.0;
     double value_scale = 1.0;
-    std::string arrays_before = {}; ///< In a FIELD before the values, for {} points.
+    std::string arrays_before = {}; ///< In a FIELD before the values, for {0} points.
     int array_count = 0;
 
     std::string content() const
@@ -205,8 +205,8 @@ TEST(VolumeCommand, WhatIsBesideTheGridInAFileChangesNoPicture)
         {"cells with points of their own", {.own_points = true}, false},
         {"a point that no cell has", {.more_points = "1e9 0 nan", .more_value = "-9999"}, true},
         {"arrays of text, bits, and of what is no number",
-         {.arrays_before = "label 1 {} string\n" + repeated("a text") + "mask 1 {} bit\n" +
-                           repeated("1") + "porosity 1 {} float\n" + repeated("nan"),
+         {.arrays_before = "label 1 {0} string\n" + repeated("a text") + "mask 1 {0} bit\n" +
+                           repeated("1") + "porosity 1 {0} float\n" + repeated("nan"),
           .array_count = 3},
          true},
         {"an empty line in the header",
@@ -269,7 +269,7 @@ TEST(VolumeCommand, SaysWhatIsDrawnInTheUnitsOfTheField)
                             .more_value = "0",
                             .value_offset = 101325.0,
                             .value_scale = 0.1,
-                            .arrays_before = "lost 1 {} float\nnan\n" + repeated("1"),
+                            .arrays_before = "lost 1 {0} float\nnan\n" + repeated("1"),
                             .array_count = 1}
                         .content());
     const auto environment = mesa_environment(patched_prefix());
@@ -494,8 +494,10 @@ TEST(VolumeCommand, OutputsGoWhereTheirNamesLead)
         EXPECT_EQ(printed.out.substr(printed.out.size() - 3), "\n}\n");
         EXPECT_NE(printed.err.find("geometry pass"), std::string::npos) << printed.err;
     }
-    expect_command_refused(with(command, {"--json", "/dev/full"}), "volume",
-                           "/dev/full: No space left on device");
+    // By then the picture has been told of.
+    const auto full = run(with(command, {"--json", "/dev/full"}), environment);
+    EXPECT_EQ(full.status, 2);
+    EXPECT_EQ(full.err, "volume: cannot write /dev/full: No space left on device\n");
     expect_command_refused(with(command, {"--json", directory / "out.csv"}), "volume",
                            "it is a .json file");
     expect_command_refused(with(command, {"--out", directory / "out.jpg"}), "volume",
