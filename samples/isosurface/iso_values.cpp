@@ -2,12 +2,12 @@
 
 #include "iso_values.hpp"
 
+#include "color.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 
 namespace kb
@@ -25,14 +25,11 @@ Result<IsoRequest> parse_iso_value(const std::string &text)
     if (equals == std::string::npos)
         return request;
 
-    const std::string_view digits = std::string_view(text).substr(equals + 1);
-    std::uint32_t rgb = 0;
-    const auto [stop, code] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), rgb, 16);
-    if (digits.size() != 6 || code != std::errc() || stop != digits.data() + digits.size())
-        return Error{fmt::format("{} has no color of six hexadecimal digits behind =", text)};
+    const auto color = parse_color(text.substr(equals + 1));
+    if (!color)
+        return Error{fmt::format("{}: {}", text, color.error().message)};
     request.has_color = true;
-    request.color = glm::vec3(rgb >> 16U, rgb >> 8U & 255U, rgb & 255U) / 255.0F;
+    request.color = *color;
     return request;
 }
 

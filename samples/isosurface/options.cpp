@@ -57,7 +57,9 @@ static void declare_surfaces(CLI::App &app, IsosurfaceOptions &options)
                    options.iso_values.push_back(*request);
                }
            },
-           "Iso-values, each with a color or without: 0.25 or 0.25=ff8000; any number of them")
+           "Iso-values, each with a color or without: 0.25, 0.25=#ff8000 or 0.25=orange; any "
+           "number of "
+           "them")
         ->delimiter(',')
         ->type_name("VALUE,...");
     app.add_option("--levels", options.levels, "Without --iso: so many, evenly spaced")

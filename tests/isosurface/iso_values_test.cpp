@@ -124,7 +124,10 @@ TEST(IsoValues, AreReadWithAndWithoutColor)
     EXPECT_EQ(colored->value, 3.0F);
     EXPECT_TRUE(colored->has_color);
     EXPECT_EQ(colored->color, glm::vec3(255.0F, 128.0F, 0.0F) / 255.0F);
-    for (const char *text : {"", "x", "1x", "nan", "inf", "1e99", "=ff8000", "1=", "1=ff800",
+    const auto named = parse_iso_value("3=red");
+    ASSERT_TRUE(named);
+    EXPECT_EQ(named->color, glm::vec3(1.0F, 0.0F, 0.0F));
+    for (const char *text : {"", "x", "1x", "nan", "inf", "1e999", "=ff8000", "1=", "1=ff800",
                              "1=ff80000", "1=-f8000", "1=gg8000", "1,2"})
         EXPECT_FALSE(parse_iso_value(text)) << text;
 }
