@@ -185,26 +185,39 @@ void start(vec4 entry0, vec4 entry1)
     front = entry1;
 }
 
-void add_optics(vec4 optics, vec3 change, float segment)
+vec4 light_of(vec4 optics, vec3 change, float segment)
 {
-    vec2 shares = (1.0 - color.a) * opacity(0.5 * optics.a * segment);
-    color += vec4(optics.rgb * shares.x + change * shares.y, shares.x);
+    vec2 opacities = opacity(0.5 * optics.a * segment);
+    return vec4(optics.rgb * opacities.x + change * opacities.y, opacities.x);
 }
 
-// Between scalars that are no further apart than 1 / cuts.
+void add_optics(vec4 optics, vec3 change, float segment)
+{
+    color += (1.0 - color.a) * light_of(optics, change, segment);
+}
+
+// Between scalars that are no further apart than 1 / cuts. What its parts let through is multiplied
+// before it is added to what there is: a sum of many thin parts would stay below 1. Primes, as cuts
+// is one: no part ends at 1/2, 1/4, 1/10, where transfer functions have their steps.
 void add_segment(float from, float to, float segment)
 {
     vec3 change;
     vec4 optics = look_up(from, to, change);
-    float parts = cuts > 0.0 ? min(ceil(4.0 * sqrt(optics.a * segment)), 16.0) : 1.0;
+    float wanted = cuts > 0.0 ? 4.0 * sqrt(optics.a * segment) : 1.0;
+    float parts = wanted > 7.0 ? 17.0 : wanted > 1.0 ? 7.0 : 1.0;
     if (!(parts > 1.0)) {
         add_optics(optics, change, segment);
         return;
     }
+    vec3 added = vec3(0.0);
+    float through = 1.0;
     for (float i = 0.0; i < parts; ++i) {
         optics = look_up(mix(from, to, i / parts), mix(from, to, (i + 1.0) / parts), change);
-        add_optics(optics, change, segment / parts);
+        vec4 light = light_of(optics, change, segment / parts);
+        added += through * light.rgb;
+        through *= 1.0 - light.a;
     }
+    color += (1.0 - color.a) * vec4(added, 1.0 - through);
 }
 
 void add_cut(float from_code, float to_code, float segment)
