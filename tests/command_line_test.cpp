@@ -174,7 +174,7 @@ TEST(CommandLine, IsosurfaceRefusesBadInput)
         {{"--iso", "x"}, "--iso"},
         {{"--iso", "0.5,nan"}, "--iso"},
         {{"--iso", "inf"}, "--iso"},
-        {{"--iso", "0.5=red"}, "--iso"},
+        {{"--iso", "0.5=reddish"}, "--iso"},
         {{"--iso", "0.5,1x"}, "--iso"},
         {{"--iso"}, "--iso"},
         {{"--iso", "0,0.5,0.50001,1"}, "0.5 and 0.50001"},
