@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace kb

@@ -17,8 +17,7 @@ newest_llvm() {
 # Paths below build/ are made relative in what ccache compares, and all trees lie and are built at
 # the same depth, so trees of one clone and clones anywhere share results. The cache is the user's.
 # What a file includes is taken from the compiler's own list after it has compiled the file (-MD),
-# instead of from a run of the preprocessor before: a build with an empty cache needs a quarter less
-# time of the processor.
+# which saves a run of the preprocessor for each file that the cache does not have.
 export CCACHE_BASEDIR=$build CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1
 
 # write_native_file [NAME COMMAND...]: the compilers of what is configured from here on: GCC through
