@@ -2,6 +2,7 @@
 
 #include "isosurface_report.hpp"
 
+#include "report_file.hpp"
 #include "report_json.hpp"
 #include "say.hpp"
 #include "timing.hpp"
@@ -122,7 +123,7 @@ Status write_report(const std::filesystem::path &path, const IsosurfaceOptions &
     }
     if (report.disorder)
         document["disorder"] = to_json(*report.disorder, options.k);
-    return write_json(path, document);
+    return write_report(path, document);
 }
 
 } // namespace kb

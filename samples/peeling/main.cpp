@@ -15,6 +15,7 @@
 #include "layer_files.hpp"
 #include "mesh_report.hpp"
 #include "options.hpp"
+#include "report_file.hpp"
 #include "scene.hpp"
 #include "timing.hpp"
 

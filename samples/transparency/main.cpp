@@ -13,6 +13,7 @@
 #include "mesh_report.hpp"
 #include "method.hpp"
 #include "output.hpp"
+#include "report_file.hpp"
 #include "scene_options.hpp"
 #include "timing.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "mesh_report.hpp"
 
-#include "output.hpp"
+#include "report_file.hpp"
 #include "version.hpp"
 
 #include <fmt/format.h>
@@ -64,7 +64,6 @@ void print_emptiness(const std::string &program, const ImageRgbaF &picture, glm:
 json mesh_report(const SceneMesh &scene, const SceneOptions &options)
 {
     const auto [low, high] = alpha_range(scene.mesh, options.alpha);
-    const OrbitCamera &camera = options.camera;
     return {
         {"version", version},
         {"mesh", scene.file.empty() ? json() : json(scene.file)},
@@ -76,21 +75,8 @@ json mesh_report(const SceneMesh &scene, const SceneOptions &options)
         {"colors_of", scene.colors_of},
         {"alpha", {low, high}},
         {"notes", scene.notes},
-        {"camera",
-         {{"azimuth", camera.azimuth},
-          {"elevation", camera.elevation},
-          {"distance", camera.distance},
-          {"field_of_view", camera.field_of_view}}},
+        {"camera", to_json(options.camera)},
     };
-}
-
-Status write_report(const std::filesystem::path &path, const json &report)
-{
-    if (path.empty())
-        return ok;
-    // The name of a mesh may be of any bytes.
-    const std::string text = report.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
-    return write_file(path, std::as_bytes(std::span(text)));
 }
 
 } // namespace kb

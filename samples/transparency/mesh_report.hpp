@@ -28,7 +28,4 @@ void print_emptiness(const std::string &program, const ImageRgbaF &picture, glm:
 /// The mesh, the camera and the version; a sample adds what it did.
 nlohmann::json mesh_report(const SceneMesh &scene, const SceneOptions &options);
 
-/// Writes a report; an empty path is none.
-Status write_report(const std::filesystem::path &path, const nlohmann::json &report);
-
 } // namespace kb

@@ -4,15 +4,11 @@
 
 #pragma once
 
-#include "camera.hpp"
 #include "disorder_report.hpp"
-#include "result.hpp"
 #include "scalar_range.hpp"
 
 #include <glm/vec3.hpp>
 #include <nlohmann/json_fwd.hpp>
-
-#include <filesystem>
 
 namespace kb
 {
@@ -21,11 +17,8 @@ namespace kb
 nlohmann::json to_json(const DisorderReport &report, int k);
 
 nlohmann::json to_json(glm::dvec3 v);
-nlohmann::json to_json(const OrbitCamera &camera);
 
 /// Lowest and highest value, in the units of the field.
 nlohmann::json to_json(const ScalarRange &range);
-
-Status write_json(const std::filesystem::path &path, const nlohmann::json &document);
 
 } // namespace kb

@@ -2,6 +2,7 @@
 
 #include "volume_report.hpp"
 
+#include "report_file.hpp"
 #include "report_json.hpp"
 #include "say.hpp"
 #include "timing.hpp"
@@ -172,7 +173,7 @@ Status write_report(const std::filesystem::path &path, const VolumeOptions &opti
         document["segments"] = to_json(*report.segments);
     if (report.disorder)
         document["disorder"] = to_json(*report.disorder, options.k);
-    return write_json(path, document);
+    return write_report(path, document);
 }
 
 } // namespace kb
