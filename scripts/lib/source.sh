@@ -48,6 +48,13 @@ source_file() {
         >"$1/fetch.log" 2>&1
 }
 
+# unpack_package FOLDER SUITE PACKAGE: into FOLDER/unpacked; nothing is installed.
+unpack_package() {
+    use_suite "$1" deb "$2" || return 1
+    (cd "$1" && apt-get "${apt_options[@]}" -qq download "$3") >"$1/fetch.log" 2>&1 || return 1
+    dpkg-deb -x "$1/$3"_*.deb "$1/unpacked"
+}
+
 mesa_from_distribution() { # FOLDER
     source_file "$1" "$debian_suite" mesa "mesa_${mesa_version}[.]orig[.]tar[.]xz" &&
         mv "$source_file" "$1/mesa.tar.xz"
@@ -129,12 +136,9 @@ need_meson() {
     [ ! -f "$tool/meson.py" ] || return 0
     say "Fetching Meson of $distribution_suite-backports into build/tools ($meson_needed is needed)"
     make_temporary folder
-    if ! use_suite "$folder" deb "$distribution_suite-backports" ||
-        ! (cd "$folder" && apt-get "${apt_options[@]}" -qq download meson) >"$folder/fetch.log" 2>&1; then
+    unpack_package "$folder" "$distribution_suite-backports" meson ||
         die "Meson $meson_needed or newer is needed, and backports do not give it" \
             "Check the network and run $command_name again, or install Meson yourself."
-    fi
-    dpkg-deb -x "$folder"/meson_*.deb "$folder/unpacked"
     # A meson.py finds its modules beside it: no environment variable has to lead to them, not even
     # when a later `ninja` by hand runs it again.
     mkdir -p "$folder/meson" "$build/tools"

@@ -37,6 +37,34 @@ test_data_without_network() {
     absent build/data/small.ply
 }
 
+# apt-get stands in for a mirror with one package, as those of real mirrors are signed.
+test_data_from_a_debian_package() {
+    make_model
+    local member=usr/share/small/small.ply
+    mkdir -p "$work/package/DEBIAN" "$work/package/usr/share/small" "$work/bin"
+    cp "$work/models/small.ply" "$work/package/$member"
+    printf 'Package: small\nVersion: 1\nArchitecture: all\nMaintainer: x\nDescription: x\n' \
+        >"$work/package/DEBIAN/control"
+    dpkg-deb --build "$work/package" "$work/small_1_all.deb" >/dev/null
+    cat >"$work/bin/apt-get" <<END
+#!/bin/sh
+case "\$*" in
+*indextargets*) echo 'bookworm http://127.0.0.1:9/' ;;
+*update) ;;
+*download\ small) cp $work/small_1_all.deb . ;;
+*) exit 1 ;;
+esac
+END
+    chmod +x "$work/bin/apt-get"
+    sed -i "s|^export PATH=|export PATH=$work/bin:|" "$project/scripts/lib/common.sh"
+    sed -i 's|"npm": {.*},|"debian": {"suite": "bookworm", "package": "small", "member": "'"$member"'"},|' \
+        "$project/scripts/data.json"
+    run 0 env "${offline[@]}" scripts/fetch-data
+    prints "from the package small of Debian bookworm"
+    cmp "$work/models/small.ply" "$project/build/data/small.ply"
+    no_temporaries
+}
+
 test_damaged_data_is_fetched_again() {
     make_model
     mkdir -p "$project/build/data"

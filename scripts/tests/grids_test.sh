@@ -156,7 +156,7 @@ test_grid_from_a_folder() {
             \"sha256\": \"$(sha256sum <"$file" | cut -d' ' -f1)\"")
     done
     echo "{\"cube\": {\"file\": \"cube.vtk\", \"what\": \"a cube\", \"origin\": \"a test\",
-        \"licence\": \"none\", \"plot3d\": {\"grid\": {${sums[0]}}, \"solution\": {${sums[1]}}}}}" \
+        \"licence\": \"none\", \"converted\": {\"grid\": {${sums[0]}}, \"solution\": {${sums[1]}}}}}" \
         >"$project/scripts/data.json"
     run 1 env "${offline[@]}" scripts/fetch-data
     prints "cannot be fetched"
