@@ -12,8 +12,8 @@ make_buildable_release() {
 project('mesa', 'c', default_options: ['warning_level=2'])
 executable('a', 'src/a.c', install: true)
 END
-    { grep -oE -- '-D[a-z0-9-]+=' "$source_root/scripts/lib/mesa.sh" && echo -Dbuild-tests=; } |
-        sort -u | grep -v prefix | sed -E "s/-D(.*)=/option('\1', type: 'string', value: '')/" \
+    grep -oE -- '-D[a-z0-9-]+=' "$source_root/scripts/lib/mesa.sh" | sort -u |
+        grep -vE 'prefix|optimization' | sed -E "s/-D(.*)=/option('\1', type: 'string', value: '')/" \
         >"$release/meson_options.txt"
     printf '%s\n' 'int' 'main(void)' '{' '   return 0;' '}' >"$release/src/a.c"
     tar -C "$work" -cJf "$work/release.tar.xz" mesa-0
