@@ -94,7 +94,17 @@ run_test() { # NAME
     # Also for tests that run as another user
     chmod 755 "$work"
     project=$work/project
-    text=$( (make_project && "$1") 2>&1) || status=$?
+    # Not in a condition, where a shell would not stop at the first command that fails.
+    set +e
+    text=$(
+        set -eE
+        exec 2>&1
+        trap 'echo "line $LINENO of ${BASH_SOURCE[0]##*/} failed: $BASH_COMMAND"' ERR
+        make_project
+        "$1"
+    )
+    status=$?
+    set -e
     case $status in
     0)
         passed=$((passed + 1))
