@@ -130,20 +130,50 @@ test_readme_names_the_functions_that_loaders_lack() {
     done
 }
 
-# The recipe for Debian: but for what needs its packages, it is tried with a source package that has
-# the files that it changes.
+# The recipe for Debian, in a shell that stops at the first failure. Programs that need Debian's
+# packages are stand-ins: apt-get has no source package without `deb-src`, dch asks who it is for,
+# and debi installs what a build has left in the folder above.
 test_readme_recipe_for_debian() {
-    local recipe
-    recipe=$(code_of sh 6 | grep -E '^(cp|echo) ')
-    [ "$(wc -l <<<"$recipe")" -eq 2 ]
-    mkdir -p "$work/mesa/debian/patches" "$work/kbuffer"
-    echo other.patch >"$work/mesa/debian/patches/series"
-    echo usr/include/GL/internal/dri_interface.h >"$work/mesa/debian/mesa-common-dev.install"
-    echo 1.patch >"$work/kbuffer/series"
-    touch "$work/kbuffer/1.patch"
-    (cd "$work/mesa" && bash -euc "${recipe//\/tmp\/kbuffer/$work\/kbuffer}")
-    [ "$(cat "$work/mesa/debian/patches/series")" = $'other.patch\n1.patch' ]
-    [ -f "$work/mesa/debian/patches/1.patch" ]
-    grep -qx usr/include/GL/mesa_kbuffer.h "$work/mesa/debian/mesa-common-dev.install"
+    local recipe program
+    recipe=$(code_of sh 6)
+    mkdir -p "$work/bin" "$work/kbuffer" "$work/here/scripts" "$work/package/debian/patches"
+    echo other.patch >"$work/package/debian/patches/series"
+    echo usr/include/GL/internal/dri_interface.h >"$work/package/debian/mesa-common-dev.install"
+    printf 'Types: deb\nSuites: trixie\n' >"$work/debian.sources"
+    cat >"$work/here/scripts/patch" <<'END'
+[ "$1 $2" = "export --debian" ] && echo 1.patch >"$3/series" && touch "$3/1.patch"
+END
+    cat >"$work/bin/apt-get" <<'END'
+case $1 in
+source | build-dep) grep -qx 'Types: deb deb-src' "$work/debian.sources" && [ -f "$work/updated" ] ;;
+update) touch "$work/updated" ;;
+esac || exit
+[ "$1" != source ] || cp -r "$work/package" mesa-25.0.7
+END
+    cat >"$work/bin/sudo" <<'END'
+exec "$@"
+END
+    cat >"$work/bin/dch" <<'END'
+[ -n "$DEBFULLNAME" ] && [ -n "$DEBEMAIL" ] && touch "$work/named"
+END
+    cat >"$work/bin/dpkg-buildpackage" <<'END'
+[ -f "$work/named" ] && touch ../mesa.changes
+END
+    cat >"$work/bin/debi" <<'END'
+[ -f ../mesa.changes ] && touch "$work/installed"
+END
+    for program in "$work"/bin/* "$work/here/scripts/patch"; do
+        sed -i '1i #!/bin/sh' "$program"
+        chmod +x "$program"
+    done
+    recipe=${recipe//\/tmp\/kbuffer/$work\/kbuffer}
+    recipe=${recipe//\/etc\/apt\/sources.list.d/$work}
+    (cd "$work/here" && env -u DEBFULLNAME -u DEBEMAIL work="$work" PATH="$work/bin:$PATH" \
+        bash -euc "$recipe")
+    [ -f "$work/installed" ]
+    local debian=$work/here/mesa-25.0.7/debian
+    [ "$(cat "$debian/patches/series")" = $'other.patch\n1.patch' ]
+    [ -f "$debian/patches/1.patch" ]
+    grep -qx usr/include/GL/mesa_kbuffer.h "$debian/mesa-common-dev.install"
     [ -f "$source_root/mesa-patches/overlay/include/GL/mesa_kbuffer.h" ]
 }
