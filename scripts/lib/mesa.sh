@@ -90,12 +90,16 @@ build_thread_mesa() {
         "${instrumented_options[@]}"
 }
 
+# A file of Meson that describes another machine, for which what is configured is compiled then
+cross=''
+
 # configure WHAT SOURCE BUILD_DIR OPTION...: only when the options are not those of the last time.
 # The stamp is written last, so a half-configured folder is made anew.
 configure() {
     local what=$1 source=$2 dir=$3 stamp
     shift 3
-    stamp=$(printf '%s\n' "${meson[*]}" "$(cat "$native")" "$@")
+    set -- ${cross:+--cross-file "$cross"} "$@"
+    stamp=$(printf '%s\n' "${meson[*]}" "$(cat "$native" ${cross:+"$cross"})" "$@")
     [ "$(cat "$dir/.kbuffer-options" 2>/dev/null)" != "$stamp" ] || return 0
     say "Configuring $what"
     rm -rf "$dir"
@@ -122,13 +126,15 @@ END
 
 # install_mesa BUILD_DIR PREFIX: a prefix is whole when it holds the stamp
 install_mesa() {
+    local vendor=$2/share/glvnd/egl_vendor.d/50_mesa.json
     rm -f "$2/.complete"
     logged "installing into $2" "$(basename "$2")-install.log" \
         "${meson[@]}" install -C "$1" --no-rebuild --only-changed
     # With its folder the library is found by programs, too, that look for others in one of theirs.
-    sed -i -E "s|(\"library_path\" *: *\").*(libEGL_mesa)|\1$2/$libdir/\2|" \
-        "$2/share/glvnd/egl_vendor.d/50_mesa.json"
-    write_package_file "$2"
+    if [ -f "$vendor" ]; then
+        sed -i -E "s|(\"library_path\" *: *\").*(libEGL_mesa)|\1$2/$libdir/\2|" "$vendor"
+        write_package_file "$2"
+    fi
     date >"$2/.complete"
 }
 

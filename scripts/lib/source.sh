@@ -16,8 +16,9 @@ debian_mirror() {
         awk '$1 !~ /-/ { print $2; exit }'
 }
 
-# use_suite FOLDER LINE_TYPE SUITE: lets `apt_private` below see one suite of the machine's mirror
-# with lists of its own: the machine's sources and lists stay as they are.
+# use_suite FOLDER LINE_TYPE SUITE [ARCHITECTURE]: lets apt-get with "${apt_options[@]}" see one
+# suite of the machine's mirror with lists of its own: the machine's sources and lists stay as they
+# are. With an architecture it sees that one's packages, as on a machine that has none installed.
 use_suite() {
     local mirror
     mirror=$(debian_mirror)
@@ -29,6 +30,11 @@ use_suite() {
     apt_options=(-o "Dir::Etc::SourceList=$1/sources.list" -o Dir::Etc::SourceParts=/dev/null
         -o "Dir::State::Lists=$1/lists" -o "Dir::Cache=$1/cache" -o APT::Sandbox::User=root
         -o APT::Update::Error-Mode=any -o Acquire::Retries=1)
+    if [ -n "${4:-}" ]; then
+        : >"$1/status"
+        apt_options+=(-o "APT::Architecture=$4" -o "APT::Architectures::=$4"
+            -o "Dir::State::status=$1/status")
+    fi
     apt-get "${apt_options[@]}" -qq update >"$1/update.log" 2>&1
 }
 
