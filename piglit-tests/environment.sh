@@ -12,8 +12,13 @@ use_prefix() {
     export LD_LIBRARY_PATH=$lib
     export __GLX_VENDOR_LIBRARY_NAME=mesa
     export __EGL_VENDOR_LIBRARY_FILENAMES=$1/share/glvnd/egl_vendor.d/50_mesa.json
+    clean_environment piglit
+}
+
+# clean_environment CACHE: without what a user's variables would change
+clean_environment() {
     # The shader cache is on, as users have it, in a folder that is not the user's.
-    export MESA_SHADER_CACHE_DIR=$build/shader-cache/piglit
+    export MESA_SHADER_CACHE_DIR=$build/shader-cache/$1
     unset MESA_SHADER_CACHE_DISABLE WAYLAND_DISPLAY PIGLIT_PLATFORM MESA_EXTENSION_OVERRIDE LIBGL_ALWAYS_SOFTWARE \
         MESA_LOADER_DRIVER_OVERRIDE
 }
