@@ -195,17 +195,21 @@ lp_build_kbuf_encode_channel(const struct lp_kbuf_pixels *pixels,
    }
 
    case UTIL_FORMAT_TYPE_SIGNED: {
-      const uint32_t max = (1u << (chan->size - 1)) - 1;
+      const double max = (1u << (chan->size - 1)) - 1;
 
-      /* A NaN becomes -1. */
-      value = lp_build_max_ext(&bld, value,
-                               lp_build_const_vec(gallivm, type, -1.0),
-                               GALLIVM_NAN_RETURN_OTHER_SECOND_NONNAN);
-      value = lp_build_min(&bld, value, bld.one);
+      /* A NaN becomes -1, a signaling one, too: the product is a quiet one.
+       * LLVM makes FMAXNM of the maximum on ARM, of which the other operand is
+       * the result for a quiet NaN only.
+       */
       value = lp_build_mul(&bld, value, lp_build_const_vec(gallivm, type, max));
+      value = lp_build_max_ext(&bld, value,
+                               lp_build_const_vec(gallivm, type, -max),
+                               GALLIVM_NAN_RETURN_OTHER_SECOND_NONNAN);
+      value = lp_build_min(&bld, value, lp_build_const_vec(gallivm, type, max));
       value = lp_build_iround(&bld, value);
       return LLVMBuildAnd(builder, value,
-                          lp_build_const_int_vec(gallivm, itype, 2 * max + 1), "");
+                          lp_build_const_int_vec(gallivm, itype,
+                                                 BITFIELD_MASK(chan->size)), "");
    }
 
    default:
