@@ -59,7 +59,8 @@ prepare_arm64_sysroot() {
                 ${packages[0]} &&
             (cd "$folder/cache/archives" && apt-get "${apt_options[@]}" -q download ${packages[1]})
     } >"$folder/fetch.log" 2>&1 ||
-        die "the packages for arm64 cannot be fetched: $(tail -n 1 "$folder/fetch.log")" \
+        die "the packages for arm64 cannot be fetched" \
+            "$(grep -hE '^E:' "$folder"/*.log | tail -n 1 || true)" \
             "Check the network and run $command_name again."
     unpack_arm64 "$folder/sysroot" "$folder"/cache/archives/*.deb
     stop_telling
