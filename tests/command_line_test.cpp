@@ -33,6 +33,8 @@ TEST(CommandLine, TransparencyRefusesBadInput)
         {{"--k", "65"}, "--k"},
         {{"--k", "99999999999999999999"}, "--k"},
         {{"--k", "eight"}, "--k"},
+        {{"--k", ""}, "--k"},
+        {{"--mesh", ""}, "--mesh: its value is empty"},
         {{"--k"}, "--k"},
         {{"--no-such-option"}, "--no-such-option"},
         {{"stray"}, "stray"},
@@ -308,6 +310,10 @@ TEST(CommandLine, WhatIsPrintedMustArrive)
                    "transparency", "standard output", 1);
     expect_refused(to_full_disk({KBUFFER_ISOSURFACE, "--help"}), "isosurface", "standard output",
                    1);
+    expect_refused(to_full_disk({KBUFFER_ISOSURFACE, "--list-fields"}), "isosurface",
+                   "standard output", 1);
+    expect_refused(to_full_disk({KBUFFER_TRANSPARENCY, "--version"}), "transparency",
+                   "standard output", 1);
     expect_refused(to_full_disk({KBUFFER_PROGRAM_TOOL, "--k", "128"}), "kbuffer-program",
                    "standard output: No space left on device");
 }

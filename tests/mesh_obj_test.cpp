@@ -32,6 +32,13 @@ TEST(LoadObj, ReadsFacesInAllForms)
     }
 }
 
+TEST(LoadObj, SkipsAByteOrderMark)
+{
+    const TempDirectory directory;
+    expect_triangles(kb::load_mesh(directory.write("m.obj", "\xEF\xBB\xBF" + points + "f 1 2 3\n")),
+                     {{origin, x, y}});
+}
+
 TEST(LoadObj, CutsConcavePolygonsIntoTheirTriangles)
 {
     const TempDirectory directory;

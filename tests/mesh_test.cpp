@@ -71,6 +71,16 @@ TEST(FitToUnitSphere, CentersAndScales)
         radius = std::max(radius, glm::length(p));
     EXPECT_NEAR(radius, 1.0F, 1e-6F);
 
+    // Squares of such lengths are no floats.
+    for (const float unit : {1e-30F, 1e30F}) {
+        kb::Mesh scaled = triangle();
+        for (auto &p : scaled.positions)
+            p *= unit;
+        kb::fit_to_unit_sphere(scaled);
+        for (std::size_t i = 0; i < scaled.positions.size(); ++i)
+            EXPECT_LT(glm::distance(scaled.positions[i], mesh.positions[i]), 1e-6F) << unit;
+    }
+
     kb::Mesh point = triangle();
     point.positions.assign(3, {4, 4, 4});
     kb::fit_to_unit_sphere(point);

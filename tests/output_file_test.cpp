@@ -189,6 +189,20 @@ TEST(OutputFile, NamesOfOtherFormatsAreRefused)
     EXPECT_EQ(directory.file_count(), 0U);
 }
 
+TEST(OutputFile, AFileTakesOne)
+{
+    const TempDirectory directory;
+    const std::string file = directory / "out";
+    const std::string link = directory / "link";
+    std::filesystem::create_symlink(file, link);
+    const auto refused =
+        kb::prepare_outputs(std::array{kb::OutputFile{file, ".png"}, kb::OutputFile{link, ".pfm"}});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find(link), std::string::npos);
+    EXPECT_TRUE(kb::prepare_outputs(
+        std::array{kb::OutputFile{file, ".png"}, kb::OutputFile{directory / "other", ".pfm"}}));
+}
+
 TEST(OutputFile, TheStandardOutputTakesOne)
 {
     const auto refused =

@@ -200,7 +200,7 @@ int main(int argc, char **argv)
         if (!fields)
             return kb::fail(app, fields.error(), kb::exit_bad_input);
         fmt::print("{}", *fields);
-        return 0;
+        return kb::finish(app);
     }
     kb::outlive_readers();
     const auto source = kb::make_source(options);

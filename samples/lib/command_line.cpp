@@ -21,6 +21,20 @@ static std::string program_name(const CLI::App &app)
     return app.get_name().empty() ? "error" : app.get_name();
 }
 
+/// Whether all options that are given have a value: an empty one is a variable that was not set.
+static Status check_values(const CLI::App &app)
+{
+    for (const CLI::Option *option : app.get_options()) {
+        if (option->get_expected_min() == 0)
+            continue; // Flags, and options that may be without a value.
+        for (const std::string &value : option->results()) {
+            if (value.empty())
+                return Error{fmt::format("{}: its value is empty", option->get_name())};
+        }
+    }
+    return ok;
+}
+
 std::optional<int> parse_command_line(CLI::App &app, int argc, const char *const *argv)
 {
     if (!app.get_option_no_throw("--version"))
@@ -30,13 +44,15 @@ std::optional<int> parse_command_line(CLI::App &app, int argc, const char *const
         app.parse(argc, argv);
     } catch (const CLI::CallForVersion &version_line) {
         fmt::print("{}\n", version_line.what());
-        return 0;
+        return finish(app);
     } catch (const CLI::CallForHelp &) {
         std::fputs(app.help().c_str(), stdout);
         return finish(app);
     } catch (const CLI::ParseError &error) {
         return fail(app, Error{fmt::format("{} (try --help)", error.what())}, exit_bad_input);
     }
+    if (const auto given = check_values(app); !given)
+        return fail(app, given.error(), exit_bad_input);
     return std::nullopt;
 }
 

@@ -418,6 +418,9 @@ private:
 
 Result<FileMesh> read_obj(std::string_view content, const std::filesystem::path &directory)
 {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (content.starts_with(byte_order_mark))
+        content.remove_prefix(byte_order_mark.size());
     Reader reader(directory);
     if (auto read = reader.read(content); !read)
         return read.error();

@@ -15,6 +15,7 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -238,6 +239,7 @@ private:
 Status prepare_outputs(std::span<const OutputFile> files)
 {
     int on_standard_output = 0;
+    std::map<std::filesystem::path, std::filesystem::path> names; // Of what will be replaced
     for (const OutputFile &output : files) {
         if (output.file.empty())
             continue;
@@ -247,6 +249,9 @@ Status prepare_outputs(std::span<const OutputFile> files)
         if (target->replaced) {
             if (auto checked = check_ending(output); !checked)
                 return checked;
+            if (const auto other = names.try_emplace(target->file, output.file); !other.second)
+                return Error{fmt::format("{} and {} are one file, to which two outputs would go",
+                                         other.first->second.string(), output.file.string())};
         }
         if (auto checked = check_access(output.file, *target); !checked)
             return checked;

@@ -194,7 +194,7 @@ int main(int argc, char **argv)
             if (!fields)
                 return kb::fail(app, fields.error(), kb::exit_bad_input);
             fmt::print("{}", *fields);
-            return 0;
+            return kb::finish(app);
         }
         const auto scene = kb::make_volume_scene(options.scene);
         if (!scene)
