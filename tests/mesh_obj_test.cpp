@@ -100,7 +100,7 @@ TEST(LoadObj, MaterialsGiveColorAndOpacity)
     const TempDirectory directory;
     const std::string start = "mtllib lib.mtl\n" + points + "usemtl glass\nf 1 2 3\n";
     const struct {
-        std::string library;
+        std::string materials;
         glm::vec4 color;
     } cases[] = {
         {"newmtl glass\nKd 1 0 0\nd 0.25\n", {1, 0, 0, 0.25F}},
@@ -111,8 +111,8 @@ TEST(LoadObj, MaterialsGiveColorAndOpacity)
         {"newmtl glass\n", {1, 1, 1, 1}},
     };
     for (const auto &c : cases) {
-        SCOPED_TRACE(c.library);
-        directory.write("lib.mtl", c.library);
+        SCOPED_TRACE(c.materials);
+        directory.write("lib.mtl", c.materials);
         const auto loaded = kb::load_mesh(directory.write("m.obj", start));
         expect_one_color(loaded, c.color);
         EXPECT_EQ(loaded->colors_of, "materials");
