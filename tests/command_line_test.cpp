@@ -33,6 +33,9 @@ TEST(CommandLine, TransparencyRefusesBadInput)
         {{"--k", "65"}, "--k"},
         {{"--k", "99999999999999999999"}, "--k"},
         {{"--k", "eight"}, "--k"},
+        {{"--k", "010"}, "--k: 010 is no integer from 1 to 64"},
+        {{"--k", "0x8"}, "--k: 0x8 is no integer"},
+        {{"--size", "0x010"}, "--size"},
         {{"--k", ""}, "--k"},
         {{"--mesh", ""}, "--mesh: its value is empty"},
         {{"--k"}, "--k"},
@@ -113,6 +116,46 @@ TEST(CommandLine, PeelingRefusesBadInput)
     expect_refused(run({KBUFFER_PEELING, "--floats"}), "peeling", "--out-dir");
     expect_refused(run({KBUFFER_PEELING, "--out", directory / "no/such/out.png"}), "peeling",
                    "no/such");
+}
+
+TEST(CommandLine, DriversThatOsmesaDoesNotHaveAreNamed)
+{
+    const TempDirectory directory;
+    auto environment = mesa_environment(patched_prefix());
+    for (const char *driver : {"zink", "nonsense", ""}) {
+        environment["GALLIUM_DRIVER"] = driver;
+        expect_refused(run({KBUFFER_PEELING, "--out", directory / "out.png"}, environment),
+                       "peeling", std::string("GALLIUM_DRIVER is '") + driver + "'", 1);
+    }
+    EXPECT_EQ(directory.file_count(), 0U);
+}
+
+// What the layers are of is one run, whatever was in the directory before.
+TEST(CommandLine, LayersOfAnEarlierRunAreReplaced)
+{
+    const auto environment = mesa_environment(patched_prefix());
+    for (const char *option : {"--out-dir", "--layers-out"}) {
+        const TempDirectory directory;
+        const std::string layers = directory / "layers";
+        const std::string program =
+            option == std::string("--out-dir") ? KBUFFER_PEELING : KBUFFER_TRANSPARENCY;
+        const auto draw = [&](const char *k) {
+            const auto result =
+                run({program, option, layers, "--k", k, "--size", "16x16", "--triangles", "100"},
+                    environment);
+            EXPECT_EQ(result.status, 0) << result.err;
+        };
+        draw("4");
+        for (const char *other : {"layer-photo.png", "layer-1.txt", "mine.png"})
+            directory.write(std::string("layers/") + other, "mine");
+        EXPECT_TRUE(std::filesystem::exists(layers + "/layer-003.png"));
+        draw("2");
+        EXPECT_TRUE(std::filesystem::exists(layers + "/layer-001.png"));
+        for (const char *gone : {"layer-002.png", "layer-003.png", "layer-003.pfm"})
+            EXPECT_FALSE(std::filesystem::exists(layers + '/' + gone)) << gone;
+        for (const char *other : {"layer-photo.png", "layer-1.txt", "mine.png"})
+            EXPECT_TRUE(std::filesystem::exists(layers + '/' + other)) << other;
+    }
 }
 
 TEST(CommandLine, PeelingSaysWhatTheDriverLacks)
@@ -378,7 +421,8 @@ TEST(CommandLine, ProgramToolPrintsOrRefuses)
     EXPECT_EQ(run({KBUFFER_PROGRAM_TOOL, "--layout", "rgbz", "--k", "3", "--out", "-"}).out,
               good.out);
 
-    expect_refused(run({KBUFFER_PROGRAM_TOOL, "--k", "0"}), "kbuffer-program", "k is 0");
+    expect_refused(run({KBUFFER_PROGRAM_TOOL, "--k", "0"}), "kbuffer-program",
+                   "--k: 0 is no integer from 1 to 256");
     expect_refused(run({KBUFFER_PROGRAM_TOOL, "--k", "129"}), "kbuffer-program", "1 to 128");
     expect_refused(run({KBUFFER_PROGRAM_TOOL, "--layout", "rgbz", "--k", "65"}), "kbuffer-program",
                    "1 to 64");

@@ -305,7 +305,8 @@ TEST(LoadGltf, RefusesWhatIsMalformed)
         {[](GltfFile &f) { f.document["scenes"][0]["nodes"] = {1}; }, "node 1: there is none"},
         {[](GltfFile &f) { f.document["scenes"][0]["nodes"] = json::array(); }, "no triangles"},
         {[](GltfFile &f) { f.document["nodes"][0]["children"] = {0}; }, "node 0: it is the child"},
-        {[](GltfFile &f) { f.document["nodes"][0]["children"] = {-4}; }, "node -4"},
+        {[](GltfFile &f) { f.document["nodes"][0]["children"] = {-4}; },
+         "nodes[0].children is no list of integers from 0 on"},
         {[](GltfFile &f) { f.document["nodes"][0]["mesh"] = 7; }, "there is no mesh 7"},
         {[](GltfFile &f) {
              f.document["nodes"][0]["scale"] = {1, 1};
@@ -351,6 +352,33 @@ TEST(LoadGltf, RefusesWhatIsMalformed)
          "longer than its buffer"},
         {[](GltfFile &f) { f.document["bufferViews"][1]["byteOffset"] = 4096; },
          "longer than its buffer"},
+        {[](GltfFile &f) { f.document["asset"]["minVersion"] = "2.1"; },
+         "needs a reader of glTF version 2.1"},
+        {[](GltfFile &f) {
+             f.document["nodes"][0]["rotation"] = {0, 0, 0, 0};
+         },
+         "no unit quaternion"},
+        {[](GltfFile &f) {
+             f.document["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+             f.document["nodes"][0]["scale"] = {2, 2, 2};
+         },
+         "a matrix, and a translation"},
+        {[](GltfFile &f) { f.document["bufferViews"][0]["byteStride"] = 8; },
+         "elements of 12 bytes are 8 bytes apart"},
+        {[](GltfFile &f) { f.document["bufferViews"][0]["byteOffset"] = -4; },
+         "bufferViews[0].byteOffset is no integer from 0 on"},
+        {[](GltfFile &f) { f.document["accessors"][0]["byteOffset"] = 0.5; },
+         "accessors[0].byteOffset is no integer from 0 on"},
+        {[](GltfFile &f) { f.document["accessors"][0]["normalized"] = 1; },
+         "accessors[0].normalized is neither true nor false"},
+        {[](GltfFile &f) { f.document["nodes"][0]["translation"] = "up"; },
+         "nodes[0].translation is no list of numbers"},
+        {[](GltfFile &f) {
+             f.document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, "1"};
+         },
+         "materials[0].pbrMetallicRoughness.baseColorFactor is no list of numbers"},
+        {[](GltfFile &f) { primitive(f)["mode"] = "triangles"; },
+         "meshes[0].primitives[0].mode is no integer from 0 on"},
         {[](GltfFile &f) {
              const float nan = std::nanf("");
              std::memcpy(f.bytes.data() + 16, &nan, 4);

@@ -309,7 +309,8 @@ TEST_F(MeshFiles, HelloProgramsHelpAndWriteWhereTheyAreTold)
         const std::filesystem::path file = directory_ / (name + "-here.ppm");
         EXPECT_EQ(run({program, file}, environment).status, 0);
         EXPECT_GT(std::filesystem::file_size(file), 3U * 256 * 256);
-        expect_refused(run({program, "--no-such-option"}, environment), name, "usage");
+        for (const char *other : {"--no-such-option", "picture.jpg", "picture", "-"})
+            expect_refused(run({program, other}, environment), name, "[FILE.ppm]");
         expect_refused(run({program, directory_ / "no/such.ppm"}, environment), name,
                        "no/such.ppm");
     }

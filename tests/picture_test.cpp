@@ -39,8 +39,8 @@ Rendering PictureTest::render(const std::string &prefix, const std::vector<std::
     rendering.floats = *floats;
     rendering.bytes = *bytes;
     for (int i = 0;; ++i) {
-        auto color = read_pfm(place / "layers" / fmt::format("layer-{:02}.pfm", i));
-        auto depth = read_pfm(place / "layers" / fmt::format("layer-{:02}-depth.pfm", i));
+        auto color = read_pfm(place / "layers" / fmt::format("layer-{:03}.pfm", i));
+        auto depth = read_pfm(place / "layers" / fmt::format("layer-{:03}-depth.pfm", i));
         if (!color || !depth)
             break;
         rendering.colors.push_back(*color);

@@ -418,6 +418,10 @@ TEST(LoadTetGrid, NamesWhatIsNotFinite)
     const std::string nothing =
         "the value of 'temperature' at point 4 is not a number (--field may be pressure)";
     EXPECT_EQ(with_value("-4e99 "), infinite);
+    EXPECT_EQ(with_value("-4e38 "), infinite);
+    EXPECT_EQ(with_value("3e38 "), "the value of 'temperature' at point 4 is 3e+38, more than "
+                                   "4.3e+37 (--field may be pressure)")
+        << "differences of such numbers are infinite";
     EXPECT_EQ(with_value("-4e-99 "), "") << "too small for a float is zero";
     EXPECT_EQ(with_value("1.#INF "), infinite) << "as Windows used to print them";
     EXPECT_EQ(with_value("-1.#IND "), nothing);
@@ -569,6 +573,8 @@ TEST(LoadPointSet, NamesWhatIsWrong)
         return set ? kb::find_field(set->fields, "a").error().message : set.error().message;
     };
     EXPECT_EQ(error("POINTS 1 float\n0 nan 0\n"), "point 0 is not finite");
+    EXPECT_EQ(error("POINTS 1 double\n0 1e300 0\n"),
+              "point 0 has the coordinate 1e+300, more than 4.3e+37");
     EXPECT_EQ(fault("POINTS 1 float\n0 0 0\nPOINT_DATA 1\nSCALARS a float\nnan\n"),
               "the value of 'a' at point 0 is not a number");
     EXPECT_EQ(fault("POINTS 1 float\n0 0 0\nPOINT_DATA 2\nSCALARS a float\n1 2\n"),

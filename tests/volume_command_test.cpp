@@ -62,6 +62,7 @@ TEST(VolumeCommand, RefusesBadOptions)
         {{"--transfer", directory / "."}, "it is a directory"},
         {{"--transfer", "/proc/self/mem"}, "/proc/self/mem: it cannot be read"},
         {{"--transfer-points", "0 0 0 1 1; 2 0 0 1"}, "line 2"},
+        {{"--transfer-points", "0 0 0 1 1; 1 0 0 1 1", "--transfer", "haze"}, "--transfer"},
         {{"--transfer-points", "1 0 0 1 1; 0 0 0 1 1"}, "ascend"},
         {{"--transfer-points", "0 0 0 1.5 1; 1 0 0 1 1"}, "1.5"},
         {{"--transfer-points", "0 0 0 1 -2; 1 0 0 1 1"}, "-2"},

@@ -61,10 +61,10 @@ std::optional<int> parse_options(CLI::App &app, Options &options, int argc, cons
                        "Fragments kept of a pixel, 1 to 64 each (fbfetch: to 16); by default those "
                        "that suit the scene, of 4, 8, 16 and 64")
             ->delimiter(',')
-            ->check(CLI::Range(1, max_k).description(""))
+            ->check(kb::integer_in(1, max_k).description(""))
             ->type_name("K,...");
     auto *rounds = app.add_option("--rounds", options.rounds, "Frames measured of each method")
-                       ->check(CLI::Range(1, 100000).description(""))
+                       ->check(kb::integer_in(1, 100000).description(""))
                        ->type_name("N")
                        ->capture_default_str();
     auto *size = add_size_option(app, options.size);

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 constexpr int size = 256;
@@ -66,7 +67,7 @@ void draw_triangle(float red, float green, float blue, float degrees, float dept
 int main(int argc, char **argv)
 {
     const char *file = argc > 1 ? argv[1] : "hello-kbuffer.ppm";
-    if (argc > 2 || file[0] == '-') {
+    if (argc > 2 || !std::string_view(file).ends_with(".ppm")) {
         const bool help = argc == 2 && (!std::strcmp(file, "--help") || !std::strcmp(file, "-h"));
         return std::fprintf(help ? stdout : stderr,
                             "hello-kbuffer: usage: hello-kbuffer [FILE.ppm]: draws three "

@@ -36,7 +36,7 @@ static void declare_source(CLI::App &app, IsosurfaceOptions &options)
         ->expected(0, 1)
         ->type_name("[FILE]");
     app.add_option("--count", options.particle_count, "How many particles are generated, about")
-        ->check(CLI::Range(100, 10'000'000))
+        ->check(integer_in(100, 10'000'000))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--field", options.field, "Scalar field, by name; without, the first")
@@ -63,11 +63,11 @@ static void declare_surfaces(CLI::App &app, IsosurfaceOptions &options)
         ->delimiter(',')
         ->type_name("VALUE,...");
     app.add_option("--levels", options.levels, "Without --iso: so many, evenly spaced")
-        ->check(CLI::Range(1, 1'000))
+        ->check(integer_in(1, 1'000))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--k", options.k, "Fragments that wait in the k-buffer")
-        ->check(CLI::Range(1, max_isosurface_k))
+        ->check(integer_in(1, max_isosurface_k))
         ->type_name("N")
         ->capture_default_str();
     add_order_option(app, options.order);
@@ -90,7 +90,7 @@ void declare_options(CLI::App &app, IsosurfaceOptions &options)
     add_context_option(app, options.context);
     add_size_option(app, options.size);
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")
-        ->check(CLI::Range(1, 10'000))
+        ->check(integer_in(1, 10'000))
         ->type_name("N");
     app.add_option("--out", options.outputs.picture, "Write the picture")->type_name("FILE.png");
     app.add_option("--float-out", options.outputs.floats, "Write the picture before rounding")

@@ -82,14 +82,27 @@ std::string check_number(const std::string &text, double low, double high)
     return fmt::format("{} is not in the range from {} to {}", text, low, high);
 }
 
-static std::optional<int> parse_side(std::string_view text)
+/// A decimal number as it is printed: without leading zeros.
+static std::optional<int> parse_integer(std::string_view text, int low, int high)
 {
-    int side = 0;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), side);
-    if (code != std::errc() || end != text.data() + text.size() || side < 1 || side > 8192)
+    int value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text != std::to_string(value) || value < low || value > high)
         return std::nullopt;
-    return side;
+    return value;
 }
+
+CLI::Validator integer_in(int low, int high)
+{
+    const auto check = [low, high](const std::string &text) {
+        return parse_integer(text, low, high)
+                   ? std::string()
+                   : fmt::format("{} is no integer from {} to {}", text, low, high);
+    };
+    return {check, fmt::format("INT in [{} - {}]", low, high)};
+}
+
+static constexpr int max_side = 8192;
 
 CLI::Option *add_size_option(CLI::App &app, Size &size)
 {
@@ -97,8 +110,8 @@ CLI::Option *add_size_option(CLI::App &app, Size &size)
         const auto cross = text.find('x');
         if (cross == std::string::npos)
             return false;
-        const auto width = parse_side(std::string_view(text).substr(0, cross));
-        const auto height = parse_side(std::string_view(text).substr(cross + 1));
+        const auto width = parse_integer(std::string_view(text).substr(0, cross), 1, max_side);
+        const auto height = parse_integer(std::string_view(text).substr(cross + 1), 1, max_side);
         if (!width || !height)
             return false;
         size = {*width, *height};
@@ -109,7 +122,8 @@ CLI::Option *add_size_option(CLI::App &app, Size &size)
             "--size",
             [parse](const std::string &text) {
                 if (!parse(text))
-                    throw CLI::ValidationError("--size", text + " is not WxH with 1 to 8192 each");
+                    throw CLI::ValidationError(
+                        "--size", fmt::format("{} is not WxH with 1 to {} each", text, max_side));
             },
             "Size of the picture in pixels")
         ->type_name("WxH")

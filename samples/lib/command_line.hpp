@@ -21,6 +21,7 @@ namespace CLI
 {
 class App;
 class Option;
+class Validator;
 } // namespace CLI
 
 namespace kb
@@ -42,6 +43,10 @@ int finish(const CLI::App &app);
 
 /// A check for add_option: empty, or what is wrong. Unlike CLI::Range it refuses NaN.
 std::string check_number(const std::string &text, double low, double high);
+
+/// A check for add_option. Unlike CLI::Range it refuses what CLI11 would take for octal (010) and
+/// hexadecimal numbers.
+CLI::Validator integer_in(int low, int high);
 
 /// --size WxH, each side from 1 to 8192.
 CLI::Option *add_size_option(CLI::App &app, Size &size);

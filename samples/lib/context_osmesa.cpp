@@ -5,7 +5,11 @@
 
 #include <GL/osmesa.h>
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cstdlib>
+#include <string_view>
 
 namespace kb
 {
@@ -53,8 +57,21 @@ private:
 
 } // namespace
 
+/// OSMesa of Mesa 25.0 crashes where it does not have the driver that the user chose.
+static Status check_driver()
+{
+    const char *driver = std::getenv("GALLIUM_DRIVER");
+    if (!driver || driver == std::string_view("llvmpipe") || driver == std::string_view("softpipe"))
+        return ok;
+    return Error{fmt::format("GALLIUM_DRIVER is '{}'; the drivers of OSMesa are llvmpipe and "
+                             "softpipe: unset it, or set it to one of them",
+                             driver)};
+}
+
 Result<std::unique_ptr<Context>> make_osmesa_context()
 {
+    if (auto checked = check_driver(); !checked)
+        return checked.error();
     auto library = SharedLibrary::open("libOSMesa.so.8");
     if (!library)
         return library.error();

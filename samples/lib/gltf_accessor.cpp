@@ -152,6 +152,10 @@ Result<AccessorValues> read(const tinygltf::Model &model, const tinygltf::Access
         const std::size_t given =
             view < model.bufferViews.size() ? model.bufferViews[view].byteStride : 0;
         const std::size_t stride = given > 0 ? given : element;
+        if (stride < element)
+            return Error{
+                fmt::format("its elements of {} bytes are {} bytes apart in buffer view {}",
+                            element, stride, view)};
         const auto data = find_bytes(model, accessor.bufferView, accessor.byteOffset,
                                      accessor.count, element, stride);
         if (!data)

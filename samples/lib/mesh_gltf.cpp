@@ -4,6 +4,7 @@
 // neither follows accessors nor nodes, nor looks at required extensions.
 
 #include "gltf_accessor.hpp"
+#include "gltf_document.hpp"
 #include "little_endian.hpp"
 #include "mesh_file.hpp"
 
@@ -63,6 +64,14 @@ Status check_extensions(const tinygltf::Model &model)
     return ok;
 }
 
+/// The document: of a binary file (whose chunks are checked) its first chunk.
+std::string_view document_of(std::string_view content)
+{
+    if (!is_binary(content))
+        return content;
+    return content.substr(20, read_little_endian<std::uint32_t>(content.data() + 12));
+}
+
 Result<tinygltf::Model> parse(std::string_view content, const std::filesystem::path &directory)
 {
     tinygltf::Model model;
@@ -95,6 +104,9 @@ Result<tinygltf::Model> parse(std::string_view content, const std::filesystem::p
         return Error{error.empty() ? "it is malformed" : error.substr(0, 200)};
     if (!model.asset.version.starts_with("2."))
         return Error{fmt::format("it is glTF version {}, not 2", model.asset.version)};
+    if (!model.asset.minVersion.empty() && model.asset.minVersion != "2.0")
+        return Error{fmt::format("it needs a reader of glTF version {}; this one is of 2.0",
+                                 model.asset.minVersion)};
     return model;
 }
 
@@ -107,15 +119,22 @@ Result<glm::dmat4> transform_of(const tinygltf::Node &node)
     if (!fits(node.matrix, 16) || !fits(node.translation, 3) || !fits(node.rotation, 4) ||
         !fits(node.scale, 3))
         return Error{"its transform is malformed"};
-    if (!node.matrix.empty())
+    if (!node.matrix.empty()) {
+        if (!node.translation.empty() || !node.rotation.empty() || !node.scale.empty())
+            return Error{"it has a matrix, and a translation, rotation or scale, too"};
         return glm::dmat4(glm::make_mat4(node.matrix.data()));
+    }
 
     glm::dmat4 transform(1.0);
     if (!node.translation.empty())
         transform[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1.0);
     if (!node.rotation.empty()) {
         const auto &r = node.rotation;
-        transform *= glm::mat4_cast(glm::dquat(r[3], r[0], r[1], r[2]));
+        const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+        // Of unit length but for the rounding of whoever wrote it.
+        if (!(std::abs(glm::length(rotation) - 1.0) < 0.01))
+            return Error{"its rotation is no unit quaternion"};
+        transform *= glm::mat4_cast(glm::normalize(rotation));
     }
     if (!node.scale.empty())
         for (int i = 0; i < 3; ++i)
@@ -459,6 +478,8 @@ Result<FileMesh> read_gltf(std::string_view content, const std::filesystem::path
         if (auto checked = check_chunks(content); !checked)
             return checked.error();
     }
+    if (auto checked = check_gltf_document(document_of(content)); !checked)
+        return checked.error();
     const auto model = parse(content, directory);
     if (!model)
         return model.error();

@@ -33,6 +33,20 @@ static std::string cell_type_name(std::int64_t type)
 namespace
 {
 
+/// Sums of a few numbers of this magnitude are still finite as floats.
+constexpr double greatest = 0x1p125;
+
+/// What is wrong with a number of a file; empty if nothing is.
+std::string fault_of(double number)
+{
+    if (std::isnan(number))
+        return "not a number";
+    if (std::isinf(number))
+        return "infinite";
+    return std::abs(number) > greatest ? fmt::format("{:g}, more than {:.1e}", number, greatest)
+                                       : std::string();
+}
+
 /// Numbers as floats, and what has to be added to them.
 struct Floats {
     std::vector<float> values;
@@ -69,8 +83,14 @@ Status take_points(std::span<const glm::dvec3> points, const Chosen &is_chosen,
 {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const glm::dvec3 &p = points[i];
-        if (is_chosen(i) && !(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
+        if (!is_chosen(i))
+            continue;
+        if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
             return Error{fmt::format("point {} is not finite", i)};
+        for (int axis = 0; axis < 3; ++axis) {
+            if (const std::string fault = fault_of(p[axis]); !fault.empty())
+                return Error{fmt::format("point {} has the coordinate {}", i, fault)};
+        }
     }
     taken.resize(points.size());
     std::vector<double> coordinates(points.size());
@@ -105,10 +125,10 @@ std::vector<ScalarField> take_fields(std::vector<VtkArray> &&arrays, std::size_t
         field.values = std::move(floats.values);
         field.offset = floats.offset;
         for (std::size_t i = 0; i < points && field.fault.empty(); ++i) {
-            if (is_chosen(i) && !std::isfinite(field.values[i]))
+            const std::string fault = is_chosen(i) ? fault_of(array.values[i]) : std::string();
+            if (!fault.empty())
                 field.fault =
-                    fmt::format("the value of '{}' at point {} is {}", field.name, i,
-                                std::isnan(field.values[i]) ? "not a number" : "infinite");
+                    fmt::format("the value of '{}' at point {} is {}", field.name, i, fault);
         }
         fields.push_back(std::move(field));
     }

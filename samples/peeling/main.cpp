@@ -139,7 +139,7 @@ kb::Result<Renderer> make_renderer(const kb::Gl &gl, const kb::PeelingOptions &o
 }
 
 /// Writes the layers of a pass: all of k, or with --all those that have a fragment.
-kb::Status write_layers(const kb::DepthPeeling &peeling, bool all, const kb::LayerFiles &files)
+kb::Status write_layers(const kb::DepthPeeling &peeling, bool all, kb::LayerFiles &files)
 {
     for (int i = 0; files.wanted() && i < peeling.layers().count; ++i) {
         const kb::ImageF depth = peeling.read_depth(i);
@@ -183,7 +183,7 @@ nlohmann::json make_report(const kb::PeelingOptions &options, const kb::SceneMes
 }
 
 std::optional<Failure> run(kb::PeelingOptions options, const kb::SceneMesh &mesh,
-                           const kb::LayerFiles &files)
+                           kb::LayerFiles &files)
 {
     const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
     const auto unwritten = [](const kb::Error &error) {
@@ -221,7 +221,10 @@ std::optional<Failure> run(kb::PeelingOptions options, const kb::SceneMesh &mesh
     }
     const GLuint framebuffer = renderer->accumulation().framebuffer();
     const kb::ImageRgbaF picture = kb::read_color(gl, framebuffer, options.layers.size);
-    written = files.write_picture(picture);
+    if (files.wanted())
+        written = files.write_color("picture", picture);
+    if (written)
+        written = files.finish();
     if (written)
         written = kb::write_outputs(options.outputs, picture, {});
     if (!written)
@@ -266,7 +269,7 @@ int main(int argc, char **argv)
     const auto mesh = kb::make_mesh(options.scene);
     if (!mesh)
         return kb::fail(app, mesh.error(), kb::exit_bad_input);
-    const kb::LayerFiles files(options.directory, options.floats);
+    kb::LayerFiles files(options.directory, options.floats);
     for (const auto &writable :
          {files.check(), kb::prepare_outputs(options.outputs, {{options.json, ".json"}})}) {
         if (!writable)

@@ -46,7 +46,7 @@ void declare_options(CLI::App &app, PeelingOptions &options)
 {
     add_scene_options(app, options.scene);
     app.add_option("--k", options.layers.count, "Layers that a pass fills (the drivers have 256)")
-        ->check(CLI::Range(1, 2048))
+        ->check(integer_in(1, 2048))
         ->type_name("N")
         ->capture_default_str();
     app.add_flag("--all", options.all,
@@ -66,11 +66,13 @@ void declare_options(CLI::App &app, PeelingOptions &options)
     add_context_option(app, options.context);
     add_size_option(app, options.layers.size);
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")
-        ->check(CLI::Range(1, 10'000))
+        ->check(integer_in(1, 10'000))
         ->type_name("N");
     app.add_option("--out", options.outputs.picture, "Write the picture")->type_name("FILE.png");
-    app.add_option("--out-dir", options.directory,
-                   "Write picture.png and the color of each layer, layer-NNN.png")
+    app.add_option(
+           "--out-dir", options.directory,
+           "Write picture.png and the color of each layer, layer-NNN.png, in the place of the "
+           "layers of an earlier run")
         ->type_name("DIR");
     app.add_flag("--floats", options.floats,
                  "Write picture, layers and their depths as PFM files into DIR, too");

@@ -30,6 +30,7 @@ int main(int argc, char **argv)
     app.add_option("--k", k,
                    "Fragments to keep: 1 to 64 with rgbz and depth, 128 with packed, 256 with "
                    "depth4")
+        ->check(kb::integer_in(1, 256))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--out", out, "Write to this file; -: to the standard output")

@@ -52,7 +52,7 @@ void declare_options(CLI::App &app, Options &options)
         ->type_name("NAME")
         ->capture_default_str();
     app.add_option("--k", options.k, "Layers to keep, 1 to 64")
-        ->check(CLI::Range(1, 64))
+        ->check(kb::integer_in(1, 64))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--layout", options.layout,
@@ -64,7 +64,7 @@ void declare_options(CLI::App &app, Options &options)
     kb::add_context_option(app, options.context);
     kb::add_size_option(app, options.size);
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")
-        ->check(CLI::Range(1, 10'000))
+        ->check(kb::integer_in(1, 10'000))
         ->type_name("N");
     app.add_option("--out", options.outputs.picture, "Write the picture")->type_name("FILE.png");
     app.add_option("--float-out", options.outputs.floats, "Write the picture before rounding")

@@ -2,10 +2,9 @@
 
 #include "output.hpp"
 
-#include <fmt/format.h>
+#include "layer_files.hpp"
 
 #include <span>
-#include <vector>
 
 namespace kb
 {
@@ -14,14 +13,8 @@ Status prepare_outputs(const OutputPaths &paths, std::vector<OutputFile> others)
 {
     others.push_back({paths.picture, ".png"});
     others.push_back({paths.floats, ".pfm"});
-    if (!paths.layers.empty()) {
-        std::error_code code;
-        std::filesystem::create_directories(paths.layers, code);
-        if (code)
-            return Error{fmt::format("cannot make the directory {}: {}", paths.layers.string(),
-                                     code.message())};
-        others.push_back({paths.layers / "layer-00.png", ".png"});
-    }
+    if (auto checked = LayerFiles(paths.layers, true).check(); !checked)
+        return checked;
     return prepare_outputs(std::span<const OutputFile>(others));
 }
 
@@ -36,16 +29,15 @@ Status write_outputs(const OutputPaths &paths, const ImageRgbaF &image,
         if (auto written = write_pfm(paths.floats, image); !written)
             return written;
     }
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        const auto stem = paths.layers / fmt::format("layer-{:02}", i);
-        if (auto written = write_png(stem.string() + ".png", to_rgba8(layers[i].color)); !written)
-            return written;
-        if (auto written = write_pfm(stem.string() + ".pfm", layers[i].color); !written)
-            return written;
-        if (auto written = write_pfm(stem.string() + "-depth.pfm", layers[i].depth); !written)
+    LayerFiles files(paths.layers, true);
+    if (auto started = files.start(); !started)
+        return started;
+    int rank = 0;
+    for (const Layer &layer : layers) {
+        if (auto written = files.write_layer(rank++, layer.color, layer.depth); !written)
             return written;
     }
-    return ok;
+    return files.finish();
 }
 
 } // namespace kb

@@ -20,12 +20,10 @@ struct OutputPaths {
     bool empty() const { return picture.empty() && floats.empty() && layers.empty(); }
 };
 
-/// Finds out before any work whether all of them can be written, and others. Makes the directory
-/// of the layers.
+/// Finds out before any work whether all of them can be written, and others.
 Status prepare_outputs(const OutputPaths &paths, std::vector<OutputFile> others = {});
 
-/// Layers are written as layer-NN.png (RGBA), layer-NN.pfm (the same color as floats) and
-/// layer-NN-depth.pfm.
+/// Layers are written with their depths and as floats, too, see LayerFiles.
 Status write_outputs(const OutputPaths &paths, const ImageRgbaF &image,
                      const std::vector<Layer> &layers);
 

@@ -17,7 +17,7 @@ void add_scene_options(CLI::App &app, SceneOptions &options, const std::string &
                    "OBJ, PLY, STL or glTF 2.0 file; without, a knot is generated")
         ->type_name("FILE");
     app.add_option("--triangles", options.triangles, "Size of the generated knot")
-        ->check(CLI::Range(100, 10'000'000))
+        ->check(integer_in(100, 10'000'000))
         ->type_name("N")
         ->capture_default_str();
     add_color_option(

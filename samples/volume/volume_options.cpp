@@ -18,20 +18,23 @@ static void declare_scene_options(CLI::App &app, VolumeSceneOptions &options)
         ->type_name("FILE");
     app.add_option("--cubes", options.cubes,
                    "Cubes along an edge of the generated grid, each in 5 tetrahedra")
-        ->check(CLI::Range(1, 256))
+        ->check(integer_in(1, 256))
         ->type_name("N")
         ->capture_default_str();
     app.add_flag("--repair", options.repair,
                  "Leave cells without volume out of the file's grid and turn inverted ones");
     app.add_option("--field", options.field, "Scalar field of the grid, by default the first")
         ->type_name("NAME");
-    app.add_option("--transfer", options.transfer,
-                   "Transfer function: haze, shells, or a file of lines of value, red, green, blue "
-                   "and extinction")
-        ->type_name("NAME|FILE")
-        ->capture_default_str();
+    auto *transfer =
+        app.add_option(
+               "--transfer", options.transfer,
+               "Transfer function: haze, shells, or a file of lines of value, red, green, blue "
+               "and extinction")
+            ->type_name("NAME|FILE")
+            ->capture_default_str();
     app.add_option("--transfer-points", options.transfer_points,
                    "Lines of such a file, with ; between them")
+        ->excludes(transfer)
         ->type_name("TEXT");
     add_camera_options(app, options.camera);
 }
@@ -45,7 +48,7 @@ void declare_options(CLI::App &app, VolumeOptions &options)
                    fmt::format("Fragments that wait in the k-buffer, 1 to {} (with --exact: that a "
                                "pass takes)",
                                max_waiting(64)))
-        ->check(CLI::Range(1, max_waiting(64)))
+        ->check(integer_in(1, max_waiting(64)))
         ->type_name("N")
         ->capture_default_str();
     app.add_flag("--exact", options.exact,
@@ -81,7 +84,7 @@ void declare_options(CLI::App &app, VolumeOptions &options)
     add_context_option(app, options.context);
     add_size_option(app, options.size);
     app.add_option("--repeat", options.repeat, "Draw this many times and print the median time")
-        ->check(CLI::Range(1, 10'000))
+        ->check(integer_in(1, 10'000))
         ->type_name("N");
     app.add_option("--out", options.picture, "Write the picture")->type_name("FILE.png");
     app.add_option("--float-out", options.floats, "Write the picture before rounding")

@@ -243,6 +243,16 @@ def check_cells(data):
                           f" {kind} has {wanted}")
 
 
+def cells_without_dimension(data):
+    """A note about the cells that are no solids, which the split leaves out; or nothing."""
+    types, counts = np.unique(vtk_to_numpy(data.GetCellTypesArray()), return_counts=True)
+    cell, flat = vtkGenericCell(), 0
+    for kind, count in zip(types, counts):
+        cell.SetCellType(int(kind))
+        flat += count if cell.GetCellDimension() < 3 else 0
+    return f"{flat:,} cells that are points, lines or faces are left out" if flat else ""
+
+
 def share_points(data):
     """Lets cells share those points that are in one place and have the same values, as finite
     element codes give each cell its own: only cells that share points are cut alike."""
@@ -268,10 +278,12 @@ def share_points(data):
 
 
 def split(data):
+    note = ""
     if isinstance(data, vtkStructuredGrid) and data.GetPoints():
         return split_structured_vtk(data)
     if isinstance(data, vtkUnstructuredGrid) and data.GetNumberOfCells():
         check_cells(data)
+        note = cells_without_dimension(data)
         data = share_points(data)
     triangulate = vtkDataSetTriangleFilter()
     triangulate.TetrahedraOnlyOn()
@@ -285,7 +297,9 @@ def split(data):
     points = vtk_to_numpy(result.GetPoints().GetData())
     if any(len(values) != len(points) for values in arrays.values()):
         arrays = point_arrays(result)
-    return Grid(points, cells, arrays)
+    grid = Grid(points, cells, arrays)
+    grid.notes += [note] if note else []
+    return grid
 
 
 def read_plot3d(path, solution, block):

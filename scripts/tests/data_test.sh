@@ -83,5 +83,7 @@ test_data_list() {
     run 0 scripts/fetch-data --list
     prints "871,414 triangles"
     prints "licence"
+    run 2 scripts/fetch-data --list dragon
+    prints "--list takes no names, not 'dragon'"
     absent build
 }

@@ -84,7 +84,7 @@ def write_plot3d(name, blocks, order=">", marks=False, real="f4", blanks=None, t
             file.write((b"\n" if text else b"").join(records))
 
 
-def write_legacy(name, points, cells, kind, arrays, order=None):
+def write_legacy(name, points, cells, kinds, arrays, order=None):
     """A legacy VTK file by hand, as what reads it has its own idea of what is wrong: arrays are
     (declaration, words or numbers) or lines; binary if an order of bytes is given."""
     def block(values, form):
@@ -98,7 +98,7 @@ def write_legacy(name, points, cells, kind, arrays, order=None):
         f"\nDATASET UNSTRUCTURED_GRID\nPOINTS {len(points)} double\n".encode(),
         block(np.ravel(points), "f8"),
         f"CELLS {len(cells)} {len(sized)}\n".encode(), block(sized, "i4"),
-        f"CELL_TYPES {len(cells)}\n".encode(), block([kind] * len(cells), "i4"),
+        f"CELL_TYPES {len(cells)}\n".encode(), block(np.broadcast_to(kinds, len(cells)), "i4"),
         f"POINT_DATA {len(points)}\n".encode(),
     ]
     for head, values in arrays:
@@ -122,6 +122,8 @@ def make_legacy():
     write_legacy("legacy-type.vtk", points, cells, 10, [(head, values)])
     write_legacy("legacy-little.vtk", points, cells, 12, [(head, values)], order="<")
     write_legacy("legacy-big.vtk", points, cells, 12, [(head, values)], order=">")
+    write_legacy("legacy-flat.vtk", points, [*cells, [0, 1, 6], [3]], [*[12] * len(cells), 5, 1],
+                 [(head, values)])
     # Arrays that are no fields, and one that is no number at a point.
     count = len(points)
     write_legacy("legacy-arrays.vtk", points, cells, 12, [

@@ -105,6 +105,9 @@ test_which_tells_what_overrides_leave() {
     run 0 env MESA_EXTENSION_OVERRIDE=-GL_MESA_kbuffer_program "$source_root/scripts/run" --which
     prints "GL_MESA_kbuffer_program: no"
     prints "GL_MESA_depth_peeling: yes"
+    run 2 "$source_root/scripts/run" --which touch "$work/started"
+    prints "--which takes no command, not 'touch'"
+    [ ! -e "$work/started" ]
 }
 
 test_run_names_what_is_wrong_with_the_environment() {

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// The pictures that the sample writes into a directory: picture.png and layer-NNN.png; as floats
-// also picture.pfm, layer-NNN.pfm and layer-NNN-depth.pfm.
+// The layers of a picture, as pictures in a directory: layer-NNN.png; as floats also layer-NNN.pfm
+// and layer-NNN-depth.pfm.
 
 #pragma once
 
 #include "image.hpp"
 
 #include <filesystem>
+#include <set>
+#include <string>
 
 namespace kb
 {
@@ -25,18 +27,20 @@ public:
     Status check() const;
 
     bool wanted() const { return !directory_.empty(); }
-    bool with_depths() const { return floats_; }
 
     /// Makes the directory.
     Status start() const;
-    Status write_layer(int rank, const ImageRgbaF &color, const ImageF &depth) const;
-    Status write_picture(const ImageRgbaF &picture) const;
-
-private:
+    Status write_layer(int rank, const ImageRgbaF &color, const ImageF &depth);
+    /// Another picture: NAME.png, and NAME.pfm.
     Status write_color(const std::string &name, const ImageRgbaF &image) const;
 
+    /// Removes the layers in the directory that were not written now but by an earlier run.
+    Status finish() const;
+
+private:
     std::filesystem::path directory_;
     bool floats_;
+    std::set<std::string> written_; ///< The names of files.
 };
 
 } // namespace kb

@@ -7,6 +7,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <regex>
+#include <vector>
 
 namespace kb
 {
@@ -46,17 +48,37 @@ Status LayerFiles::write_color(const std::string &name, const ImageRgbaF &image)
     return floats_ ? write_pfm(directory_ / (name + ".pfm"), image) : ok;
 }
 
-Status LayerFiles::write_layer(int rank, const ImageRgbaF &color, const ImageF &depth) const
+Status LayerFiles::write_layer(int rank, const ImageRgbaF &color, const ImageF &depth)
 {
     const std::string name = fmt::format("layer-{:03}", rank);
+    written_.insert(name + ".png");
+    if (floats_)
+        written_.insert({name + ".pfm", name + "-depth.pfm"});
     if (auto written = write_color(name, color); !written || !floats_)
         return written;
     return write_pfm(directory_ / (name + "-depth.pfm"), depth);
 }
 
-Status LayerFiles::write_picture(const ImageRgbaF &picture) const
+Status LayerFiles::finish() const
 {
-    return wanted() ? write_color("picture", picture) : ok;
+    if (!wanted())
+        return ok;
+    static const std::regex layer("layer-[0-9]{3,}([.]png|(-depth)?[.]pfm)");
+    std::error_code code;
+    std::vector<std::filesystem::path> others;
+    for (const auto &entry : std::filesystem::directory_iterator(directory_, code)) {
+        const std::string name = entry.path().filename().string();
+        if (std::regex_match(name, layer) && !written_.contains(name))
+            others.push_back(entry.path());
+    }
+    for (const auto &other : others) {
+        if (!code)
+            std::filesystem::remove(other, code);
+        if (code)
+            return Error{fmt::format("cannot remove {}, a layer of an earlier run: {}",
+                                     other.string(), code.message())};
+    }
+    return ok;
 }
 
 } // namespace kb
