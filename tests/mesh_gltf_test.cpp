@@ -362,7 +362,7 @@ TEST(LoadGltf, RefusesWhatIsMalformed)
              f.document["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
              f.document["nodes"][0]["scale"] = {2, 2, 2};
          },
-         "a matrix, and a translation"},
+         "nodes[0] has a matrix and a scale"},
         {[](GltfFile &f) { f.document["bufferViews"][0]["byteStride"] = 8; },
          "elements of 12 bytes are 8 bytes apart"},
         {[](GltfFile &f) { f.document["bufferViews"][0]["byteOffset"] = -4; },

@@ -417,11 +417,10 @@ TEST(LoadTetGrid, NamesWhatIsNotFinite)
         "the value of 'temperature' at point 4 is infinite (--field may be pressure)";
     const std::string nothing =
         "the value of 'temperature' at point 4 is not a number (--field may be pressure)";
-    EXPECT_EQ(with_value("-4e99 "), infinite);
-    EXPECT_EQ(with_value("-4e38 "), infinite);
-    EXPECT_EQ(with_value("3e38 "), "the value of 'temperature' at point 4 is 3e+38, more than "
-                                   "4.3e+37 (--field may be pressure)")
-        << "differences of such numbers are infinite";
+    // Floats have no differences of such numbers.
+    for (const std::string large : {"-4e+99", "-4e+38", "3e+38"})
+        EXPECT_EQ(with_value(large + ' '), "the value of 'temperature' at point 4 is " + large +
+                                               ", more than 4.3e+37 (--field may be pressure)");
     EXPECT_EQ(with_value("-4e-99 "), "") << "too small for a float is zero";
     EXPECT_EQ(with_value("1.#INF "), infinite) << "as Windows used to print them";
     EXPECT_EQ(with_value("-1.#IND "), nothing);

@@ -126,6 +126,19 @@ Status check(const json &value, std::string_view path, const Property &property,
     return ok;
 }
 
+/// Each node has its transform in one of the two forms. Its properties have the right types.
+Status check_transforms(const json &document)
+{
+    const json nodes = document.value("nodes", json::array());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        for (const char *other : {"translation", "rotation", "scale"}) {
+            if (nodes[i].contains("matrix") && nodes[i].contains(other))
+                return Error{fmt::format("nodes[{}] has a matrix and a {}", i, other)};
+        }
+    }
+    return ok;
+}
+
 } // namespace
 
 Status check_gltf_document(std::string_view text)
@@ -137,7 +150,7 @@ Status check_gltf_document(std::string_view text)
         if (auto checked = check(document, property.path, property, ""); !checked)
             return checked;
     }
-    return ok;
+    return check_transforms(document);
 }
 
 } // namespace kb

@@ -119,11 +119,8 @@ Result<glm::dmat4> transform_of(const tinygltf::Node &node)
     if (!fits(node.matrix, 16) || !fits(node.translation, 3) || !fits(node.rotation, 4) ||
         !fits(node.scale, 3))
         return Error{"its transform is malformed"};
-    if (!node.matrix.empty()) {
-        if (!node.translation.empty() || !node.rotation.empty() || !node.scale.empty())
-            return Error{"it has a matrix, and a translation, rotation or scale, too"};
+    if (!node.matrix.empty())
         return glm::dmat4(glm::make_mat4(node.matrix.data()));
-    }
 
     glm::dmat4 transform(1.0);
     if (!node.translation.empty())
