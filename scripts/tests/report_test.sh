@@ -26,7 +26,7 @@ PYTHON
 }
 
 python=/usr/bin/python3
-report=("$python" -B scripts/lib/report "results.json" "index.html")
+report=("$python" -B scripts/lib/report transparency "results.json" "index.html")
 
 need_matplotlib() {
     "$python" -c 'import matplotlib' 2>/dev/null || skip "needs Matplotlib"
@@ -150,7 +150,7 @@ PYTHON
 }
 
 test_hard_cases_are_counted_and_shown() {
-    local table=("$python" -B scripts/lib/report/hard_cases.py rows hard-cases.html) text
+    local table=("$python" -B scripts/lib/report hard-cases rows hard-cases.html) text
     write_rows
     run 0 "${table[@]}"
     prints "not ok: 1. coplanar 4 samples, kbuffer-program on softpipe: is wrong"

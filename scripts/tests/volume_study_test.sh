@@ -48,7 +48,7 @@ json.dump(document, open(sys.argv[1], "w"))
 PYTHON
 }
 
-volume_page=(/usr/bin/python3 -B scripts/lib/report/volume.py volume.json volume.html)
+volume_page=(/usr/bin/python3 -B scripts/lib/report volume volume.json volume.html)
 
 test_volume_page_shows_every_row() {
     local text

@@ -1,31 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Usage: python3 report RESULTS.JSON OUT.HTML
-
-Writes the study's results as a page with plots. Exit status 1 if they are malformed or the page
-cannot be written, with nothing written."""
+"""Runs the package by the name of its folder, which Python then takes for a folder of single modules:
+the folder above it is where imports are looked for instead."""
 
 import os
 import sys
 
-import results
-from parts import write_whole
+sys.path[0] = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+from report import command  # noqa: E402 # pylint: disable=wrong-import-position
 
-
-def main(source, target):
-    try:
-        study = results.load(source)
-    except (OSError, results.Malformed) as error:
-        sys.exit(f"{source}: {getattr(error, 'strerror', None) or error}")
-    try:
-        import page  # pylint: disable=import-outside-toplevel # needs Matplotlib
-    except ModuleNotFoundError as error:
-        sys.exit(f"Python has no module {error.name}: install the package python3-{error.name}")
-    folder = os.path.dirname(os.path.abspath(target))
-    text = page.make(study, os.path.relpath(source, folder))
-    write_whole(target, text)
-
-
-if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+command.main()

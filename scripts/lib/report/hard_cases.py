@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Usage: python3 hard_cases.py FOLDER OUT.HTML
-
-Makes the table of the hard cases from the rows that the program hard-cases wrote into the folder:
+"""The table of the hard cases, of the rows that the program hard-cases wrote into a folder:
 llvmpipe.json and softpipe.json with the extensions, stock.json without, lost-layer.json and
 swapped-layers.json with one sample of each case spoiled, and same-*.json, whose layers are compared
-with those of same-usual.json. Writes all rows beside the page as OUT.json. Prints what is not as promised, and last "N passed, N failed, N skipped"."""
+with those of same-usual.json. All rows go beside the page, too. What is not as promised is printed,
+and last "N passed, N failed, N skipped"."""
 
 import json
 import os
 import sys
-from html import escape
 
-from parts import document, table, write_whole
+from . import documents, render
 
 DRIVERS = ("llvmpipe", "softpipe")
 METHODS = ("depth-peeling", "kbuffer-program")
@@ -34,26 +32,6 @@ ENVIRONMENTS = (
     ("same-warm-cache", "shader cache", "Shaders compiled or from the cache: the same bits", "warm"),
 )
 
-GUIDE = """
-<h2>How to read this</h2>
-<ul>
-<li>Each case draws a scene whose layers are known beforehand, through the public GL, and reads
-every layer of every sample back. A number is right if it is no further from the expected one than
-the tolerance; where that is 0, all bits are predicted. How the others are derived is said beside
-each in the sources, <code>tests/hard_cases</code>.</li>
-<li>The first table shows the first number of a case in its first form, and whether all numbers in
-all forms are right. The others show every number.</li>
-<li><b>Stock rivals</b> are other methods on the unpatched Mesa, drawn by the code that
-<code>scripts/bench</code> measures. They give pictures of colors with 8 bits: an alpha of .25 is
-64/255 there, one of .5 is 128/255, and what is expected of them is computed from that. Classic and dual peeling are right
-wherever depths differ by more than they can miss; lists and framebuffer fetch are as exact as the
-extensions here, at the costs that the benchmark shows.</li>
-<li>A test of the tests: with one layer of one sample lost, and with two swapped where a case is
-about order, every case has to come out wrong; and so do the rivals that are known to be.</li>
-</ul>
-"""
-
-
 def _number(value):
     return f"{value:.9g}"
 
@@ -74,6 +52,7 @@ class Cases:
         self.drivers = {name: documents[name]["driver"] for name in (*DRIVERS, "stock")}
         self.rows = {name: documents[name]["rows"] for name in (*DRIVERS, "stock", *FLAWS)}
         self.passed = 0
+        self.failed = 0
         self.complaints = []
         self._append_environments(documents)
         for driver in DRIVERS:
@@ -114,6 +93,7 @@ class Cases:
         if good:
             self.passed += 1
             return
+        self.failed += 1
         text = " ".join(filter(None, (_title(row["row"], row["name"]), row["form"])))
         self.complaints.append(f"not ok: {text}, {row['method']} on {driver}: {complaint}")
         for quantity in row["quantities"]:
@@ -175,7 +155,7 @@ def _summary(cases):
         rivals = [row for row in cases.rows["stock"] if row["name"] == name]
         cells += [_rivals_text(rivals), (_mark(right), "" if right else "wrong")]
         lines.append(("", cells))
-    return table("Measured on both drivers; verdicts are those of all forms and numbers.", head,
+    return render.table("Measured on both drivers; verdicts are those of all forms and numbers.", head,
                  lines)
 
 
@@ -216,64 +196,57 @@ def _case(cases, number, name, promise):
                 if quantity["what"] not in shown:
                     lines.append(("", _quantity_line(row, i, "" if shown else form, columns)))
                     shown.add(quantity["what"])
-    text = f'<h2>{escape(_title(number, name))}</h2>\n<p>{escape(promise)}.</p>\n'
-    text += table("", head, lines)
     rivals = [row for row in cases.rows["stock"] if row["name"] == name]
-    if rivals:
-        text += table("Stock rivals, on llvmpipe:",
-                      [("method", "text"), ("number", "text"), ("expected", ""), ("tolerance", ""),
-                       ("measured", ""), ("verdict", "text")],
-                      [("", [row["method"], q["what"], _number(q["expected"]),
-                             _number(q["tolerance"]),
-                             (_number(q["measured"]), "" if q["right"] else "wrong"),
-                             _mark(q["right"])])
-                       for row in rivals for q in row["quantities"]])
-        reasons += [f"{row['method']}: {row['why_not']}" for row in rivals if row["why_not"]]
-    if reasons:
-        items = "".join(f"<li>{escape(reason)}</li>\n" for reason in dict.fromkeys(reasons))
-        text += f"<p>Not measured:</p>\n<ul>\n{items}</ul>\n"
-    return text
+    reasons += [f"{row['method']}: {row['why_not']}" for row in rivals if row["why_not"]]
+    return {"title": _title(number, name), "promise": promise,
+            "numbers": render.table("", head, lines), "rivals": _rivals(rivals),
+            "reasons": list(dict.fromkeys(reasons))}
 
 
-def make(cases, data):
-    drivers = "".join(f"<dt>{escape(name)}</dt><dd>{escape(driver)}</dd>\n"
-                      for name, driver in cases.drivers.items())
-    details = "".join(_case(cases, *names) for names in cases.names())
-    return document("What must stay numerically stable", f"""
-<p>Cases that are hard for methods that keep several fragments of a pixel, with the analytic answer
-and what was measured, by both extensions on both drivers. The raw data is in
-<a href="{escape(data)}">{escape(data)}</a>; what the methods cost is in
-<a href="index.html">index.html</a>, which <code>scripts/bench</code> makes.</p>
-{_summary(cases)}{GUIDE}
-<h2>Drivers</h2>
-<dl>
-{drivers}</dl>
-{details}""")
+def _rivals(rows):
+    """Every number of the methods of stock Mesa in a case; None if there are no such methods."""
+    if not rows:
+        return None
+    head = [("method", "text"), ("number", "text"), ("expected", ""), ("tolerance", ""),
+            ("measured", ""), ("verdict", "text")]
+    lines = [("", [row["method"], q["what"], _number(q["expected"]), _number(q["tolerance"]),
+                   (_number(q["measured"]), "" if q["right"] else "wrong"), _mark(q["right"])])
+             for row in rows for q in row["quantities"]]
+    return render.table("Stock rivals, on llvmpipe:", head, lines)
 
 
-def main(folder, target):
+def _make(cases, data):
+    return render.page("hard_cases", data=data, summary=_summary(cases),
+                       drivers=list(cases.drivers.items()),
+                       cases=[_case(cases, *names) for names in cases.names()])
+
+
+def _read(folder):
+    found = {}
+    for name in (*DRIVERS, "stock", *FLAWS, "same-usual", "same-lost-layer",
+                 *(file for file, *_ in ENVIRONMENTS)):
+        path = os.path.join(folder, name + ".json")
+        try:
+            found[name] = documents.read(path)
+        except (OSError, documents.Malformed) as error:
+            sys.exit(f"{path}: {documents.reason(error)}")
+    return found
+
+
+def write(folder, target):
+    """Writes the page and, beside it, all rows as JSON; prints what is not as promised."""
+    data = os.path.splitext(target)[0] + ".json"
     try:
-        documents = {}
-        for name in (*DRIVERS, "stock", *FLAWS, "same-usual", "same-lost-layer",
-                     *(file for file, *_ in ENVIRONMENTS)):
-            with open(os.path.join(folder, name + ".json"), encoding="utf-8") as file:
-                documents[name] = json.load(file)
-        data = os.path.splitext(target)[0] + ".json"
-        cases = Cases(documents)
-        write_whole(data, json.dumps({"drivers": cases.drivers, "rows": cases.rows}, indent=1) + "\n")
-        write_whole(target, make(cases, os.path.basename(data)))
-    except OSError as error:
-        sys.exit(f"{error.filename}: {error.strerror}")
-    except ValueError as error:
-        sys.exit(f"{folder}: this is no JSON: {error}")
+        cases = Cases(_read(folder))
+        text = _make(cases, os.path.basename(data))
+    except KeyError as error:
+        sys.exit(f"{folder}: a row has no {error}")
+    except documents.Malformed as error:
+        sys.exit(f"{folder}: {error}")
+    rows = json.dumps({"drivers": cases.drivers, "rows": cases.rows}, indent=1)
+    render.write_whole(data, rows + "\n")
+    render.write_whole(target, text)
     for complaint in cases.complaints:
         print(complaint)
-    failed = sum(complaint.startswith("not ok") for complaint in cases.complaints)
     print(f"Table: {target}")
-    print(f"{cases.passed} passed, {failed} failed, 0 skipped")
-
-
-if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+    print(f"{cases.passed} passed, {cases.failed} failed, 0 skipped")

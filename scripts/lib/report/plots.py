@@ -4,6 +4,7 @@
 import io
 import math
 
+import markupsafe
 import matplotlib
 
 matplotlib.use("svg")
@@ -12,7 +13,7 @@ from matplotlib import pyplot
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from results import BASE
+from .results import BASE
 
 # Colors of Okabe and Ito, which the color-blind tell apart, and a marker of its own each.
 STYLES = {
@@ -73,12 +74,12 @@ class Look:
 
 
 def _svg(figure, title):
-    """The figure as an element for a page; its ids are its own."""
+    """The figure as an element for a page, which does not escape it; its ids are its own."""
     text = io.StringIO()
     with pyplot.rc_context({"svg.hashsalt": title}):
         figure.savefig(text, format="svg", bbox_inches="tight", metadata={"Date": None})
     pyplot.close(figure)
-    return text.getvalue()[text.getvalue().index("<svg"):]
+    return markupsafe.Markup(text.getvalue()[text.getvalue().index("<svg"):])
 
 
 def _axes():

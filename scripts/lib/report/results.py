@@ -2,16 +2,14 @@
 """Reads the study's results.json, and says what is wrong with one that is not right."""
 
 import dataclasses
-import json
 import math
+
+from . import documents
+from .documents import Malformed
 
 BASE = "zbuffer"
 # Forms whose result GL does not define, whatever a driver makes of them.
 UNDEFINED = {"unlocked"}
-
-
-class Malformed(Exception):
-    pass
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,6 +58,10 @@ class Study:
     def of(self, scene):
         return [row for row in self.rows if row.scene == scene]
 
+    def about(self, scene):
+        """What is known of a scene besides its rows."""
+        return self.machine.get("scenes", {}).get(scene, {})
+
     def find(self, scene, method, k, variant=""):
         for row in self.of(scene):
             if (row.method, row.variant, row.k) == (method, variant, k):
@@ -92,11 +94,7 @@ def _row(row, where):
 
 def load(path):
     """The study in the file. Raises Malformed, or OSError when it cannot be read."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            document = json.load(file)
-    except ValueError as error:
-        raise Malformed(f"this is no JSON: {error}") from error
+    document = documents.read(path)
     if not isinstance(document, dict) or not isinstance(document.get("machine"), dict):
         raise Malformed('there is no object "machine"')
     if not isinstance(document.get("results"), list) or not document["results"]:
