@@ -54,7 +54,7 @@ def _picture(document, name, what):
 
 
 def _driver(answer):
-    """The driver's name and version. The answer of scripts/run --which has a "name: value" a line."""
+    """The driver's name and version, from the lines "name: value" of scripts/run --which."""
     known = dict(line.split(": ", 1) for line in answer.splitlines() if ": " in line)
     for name in ("driver", "version"):
         if name not in known:
