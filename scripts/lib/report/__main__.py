@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Runs the package by the name of its folder, which Python then takes for a folder of single modules:
-the folder above it is where imports are looked for instead."""
+"""Runs the package by the name of its folder. Python takes that for a folder of single modules, so
+the folder above it is made the one in which imports are looked for."""
 
 import os
 import sys

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Makes one of the reports' pages from what was measured. If that is malformed or the page cannot be
-written, the exit status is 1, one line says why, and nothing is written."""
+"""Makes one of the reports' pages from what was measured. If that is malformed or the page cannot
+be written, the exit status is 1, one line says why, and nothing is written."""
 
 import argparse
 import sys

@@ -28,8 +28,10 @@ ENVIRONMENTS = (
     ("same-width-256", "vector width", "Vectors of 128 and 256 bits: the same bits", "256 bits"),
     ("same-no-culling", "culling", "With and without early rejection: the same bits", "without"),
     ("same-no-cache", "shader cache", "Shaders compiled or from the cache: the same bits", "off"),
-    ("same-cold-cache", "shader cache", "Shaders compiled or from the cache: the same bits", "cold"),
-    ("same-warm-cache", "shader cache", "Shaders compiled or from the cache: the same bits", "warm"),
+    ("same-cold-cache", "shader cache", "Shaders compiled or from the cache: the same bits",
+     "cold"),
+    ("same-warm-cache", "shader cache", "Shaders compiled or from the cache: the same bits",
+     "warm"),
 )
 
 def _number(value):
@@ -155,8 +157,8 @@ def _summary(cases):
         rivals = [row for row in cases.rows["stock"] if row["name"] == name]
         cells += [_rivals_text(rivals), (_mark(right), "" if right else "wrong")]
         lines.append(("", cells))
-    return render.table("Measured on both drivers; verdicts are those of all forms and numbers.", head,
-                 lines)
+    return render.table("Measured on both drivers; verdicts are those of all forms and numbers.",
+                        head, lines)
 
 
 def _quantity_line(row, i, form, columns):

@@ -40,8 +40,8 @@ def _scene_table(study, scene):
             _speed_up(study.find(scene, "fbfetch", row.k), row),
             f"{row.bytes_per_pixel:,}", _small(row.err_max), _small(row.err_share),
             _small(row.err_all_rmse)]))
-    return render.table("Every row measured; methods of the patched Mesa in bold. “Faster” is how many "
-                 "times as fast, with the same k.", head, lines)
+    return render.table("Every row measured; methods of the patched Mesa in bold. “Faster” is how "
+                        "many times as fast, with the same k.", head, lines)
 
 
 def _best_of_stock(study, scene, k):
@@ -67,8 +67,8 @@ def _summary(study):
                 cells += [_number(row.ratio_median) if row else "–",
                           _speed_up(best, row) if row else "–"]
             lines.append(("summary", cells))
-    return render.table("Time as a multiple of an opaque z-buffered pass; “times as fast” is against the "
-                 "fastest exact method of stock Mesa with the same k.", head, lines)
+    return render.table("Time as a multiple of an opaque z-buffered pass; “times as fast” is against "
+                        "the fastest exact method of stock Mesa with the same k.", head, lines)
 
 
 def _facts(study, scene):

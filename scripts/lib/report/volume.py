@@ -49,7 +49,8 @@ def _comparison(rows):
             _number(row["sort_ms"]) if row["sort_ms"] is not None else "–", str(row["passes"]),
             _steps(row["err_rmse"]), _steps(row["err_max"]), _percent(row["err_share"]),
             *against]))
-    return render.table("Errors in steps of 1/255; methods of the patched Mesa in bold.", head, lines)
+    return render.table("Errors in steps of 1/255; methods of the patched Mesa in bold.", head,
+                        lines)
 
 
 def _tolerances(rows):
@@ -66,8 +67,8 @@ def _tolerances(rows):
                            _steps(row["err_max"]), _percent(row["err_share"]),
                            _number(row["ms_median"]),
                            "–" if every else _number(row["ms_clusters"])]))
-    return render.table("What accuracy costs: faces are left out as long as no color can be off by more "
-                 "than the tolerance (k = 12, by centroids).", head, lines)
+    return render.table("What accuracy costs: faces are left out as long as no color can be off by "
+                        "more than the tolerance (k = 12, by centroids).", head, lines)
 
 
 def _accuracy(rows):
@@ -78,10 +79,10 @@ def _accuracy(rows):
                    str(row["displacement"]), _percent(row["share_wrong"]), _steps(row["err_rmse"]),
                    _steps(row["err_max"]), _number(row["ms_median"]), _number(row["sort_ms"])])
              for row in rows]
-    return render.table("What order costs: the faces are subdivided up to a budget of triangles, those "
-                 "first that have the longest edges. Displacement is how many places a "
-                 "fragment comes too late in the sequence of its pixel, the largest of the "
-                 "picture; with more than k the order is wrong there.", head, lines)
+    return render.table("What order costs: the faces are subdivided up to a budget of triangles, "
+                        "those first that have the longest edges. Displacement is how many places "
+                        "a fragment comes too late in the sequence of its pixel, the largest of "
+                        "the picture; with more than k the order is wrong there.", head, lines)
 
 
 def _pictures(folder, scene, rows):
@@ -127,7 +128,7 @@ def _load(path):
 
 
 def write(source, target):
-    """Makes the page of what the study wrote, with the pictures in the folder of the JSON's name."""
+    """Makes the page of what the study wrote; the pictures are in the folder of the JSON's name."""
     try:
         study, folder = _load(source), os.path.splitext(source)[0]
         text = render.page("volume", data=os.path.basename(source), machine=_machine(study),
