@@ -51,7 +51,8 @@ test_demo_page_shows_what_the_samples_tell() {
     prints "demo/volume.png                             3.00 ms   1 pass    <script> & \"more\""
     shown "9.00 ms, 3 geometry passes, 871,414 triangles" \
         "3.00 ms, 1 geometry pass, 1,234 of 5,000 faces" \
-        "1.50 ms, 1 geometry pass, 1,000 points" "640x480 pixels; the times are medians of 3 frames" \
+        "1.50 ms, 1 geometry pass, 1,000 points" \
+        "640x480 pixels; the times are medians of 3 frames" \
         'src="mesh.png"' 'href="mesh.json"' "<p>a mesh, k = 8</p>"
     # Not one character of what is shown is taken for HTML.
     shown "llvmpipe &lt;LLVM &amp; Co&gt;, OpenGL 4.5 (Mesa)" \

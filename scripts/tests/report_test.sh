@@ -71,6 +71,7 @@ for row, cells in zip(wanted, shown):
     for text in (str(row["k"] or "–"), f"{row['ms_median']:.4g}", f"{row['bytes_per_pixel']}"):
         assert any(text in cell for cell in cells), (text, cells)
 assert page.pictures == 6, page.pictures
+assert "<here>" not in open(sys.argv[2]).read()
 for text in "Test & Co", "see <here>", "a <b>: error against time", "1,234,567 fragments":
     assert text in page.text, text
 PYTHON
@@ -170,6 +171,13 @@ test_hard_cases_are_counted_and_shown() {
     run 0 "${table[@]}"
     prints "does not notice the nearest layer of one sample lost"
     prints "not ok: 25. digest of all layers, depth-peeling"
+    # A key that is missing is named, and the page that was there stays as it was.
+    sed -i 's/"promise"/"premise"/g' "$project/rows/llvmpipe.json"
+    cp "$project/hard-cases.html" "$work/before.html"
+    run 1 "${table[@]}"
+    prints "rows: a row has no 'promise'"
+    lines 1
+    cmp "$project/hard-cases.html" "$work/before.html"
     rm "$project/rows/stock.json"
     run 1 "${table[@]}"
     prints "rows/stock.json: No such file"

@@ -77,6 +77,14 @@ test_volume_page_refuses_malformed_results() {
         lines 1
         absent volume.html volume.html.new
     done
+    # Whether the page's program misses a key or its template does, the key is named.
+    write_study 'del rows[1]["err_rmse"]'
+    run 1 "${volume_page[@]}"
+    prints "'err_rmse'"
+    write_study 'del document["scenes"]["a <b>"]["camera"]["elevation"]'
+    run 1 "${volume_page[@]}"
+    prints "'elevation'"
+    absent volume.html volume.html.new
     rm "$project/volume.json"
     run 1 "${volume_page[@]}"
     prints "volume.json: No such file"
