@@ -68,7 +68,8 @@ def _summary(study):
                           _speed_up(best, row) if row else "–"]
             lines.append(("summary", cells))
     return render.table("Time as a multiple of an opaque z-buffered pass; “times as fast” is "
-                        "against the fastest exact method of stock Mesa with the same k.", head, lines)
+                        "against the fastest exact method of stock Mesa with the same k.", head,
+                        lines)
 
 
 def _facts(study, scene):
