@@ -174,3 +174,29 @@ test_regression_only_what_is_worse_runs_again() {
     prints 'name="one"'
     [[ $output != *two* && $output != *three* ]]
 }
+
+test_regression_page_shows_what_was_judged() {
+    local table=$source_root/piglit-tests/regression/table.py text
+    local page=(/usr/bin/python3 -B "$table" page.html "A <page>")
+    cat >"$project/judgement.json" <<'JSON'
+{"driver": "llvm<pipe", "tests": 12, "passed": 10, "failed": 1, "stock": {"pass": 11, "fail": 1},
+ "ours": {"pass": 10, "fail": 2}, "rows": [{"verdict": "regression", "name": "spec@a & b",
+ "stock": ["pass"], "ours": ["fail", "crash"]}]}
+JSON
+    run 0 "${page[@]}" judgement.json
+    for text in "<h1>A &lt;page&gt;</h1>" "llvm&lt;pipe: 10 pass on both, 1 are worse on ours." \
+        "<td class=\"text\">stock</td><td>12</td><td>11</td><td>0</td><td>0</td><td>1</td>" \
+        "<tr class=\"failure\"><td class=\"text\">llvm&lt;pipe</td>" "spec@a &amp; b" "fail crash"; do
+        grep -qF "$text" "$project/page.html" || {
+            echo "the page lacks: $text"
+            exit 1
+        }
+    done
+    rm "$project/page.html"
+    sed -i 's/"passed"/"past"/' "$project/judgement.json"
+    run 1 "${page[@]}" judgement.json
+    prints "judgement.json: a key is missing: "
+    prints "'passed'"
+    lines 1
+    absent page.html
+}
