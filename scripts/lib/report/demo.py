@@ -36,7 +36,7 @@ def _value(document, key):
 
 
 def _primitives(document):
-    """What was drawn, in words. isosurface draws faces of cells or points, and says which; volume
+    """What was drawn, in words. isosurface draws triangles or points, and says which; volume
     leaves faces out that cannot be seen; the samples that draw meshes draw all triangles."""
     if "primitive" in document:
         return f"{_value(document, 'primitives'):,} {document['primitive']}"
