@@ -13,6 +13,8 @@ import sys
 
 SUBJECT_COLUMNS = 75  # Mesa's limit
 BODY_COLUMNS = 80  # what `git log` shows on a terminal without wrapping, less its indentation of 4
+# The last line of a message, as OpenEmbedded has it
+UPSTREAM_STATUS = r"Upstream-Status: (Pending|(Submitted|Accepted|Denied|Inappropriate) \[.+\])"
 
 
 def hunks(diff):
@@ -33,8 +35,11 @@ def form_of_message(subject, body):
         yield f"subject is not of the form 'module: summary': {subject}"
     if len(subject) > SUBJECT_COLUMNS:
         yield f"subject has {len(subject)} columns"
-    if not body.strip():
+    *reason, status = body.rstrip().split("\n")
+    if not "".join(reason).strip():
         yield "says nothing of why it is there"
+    if not re.fullmatch(UPSTREAM_STATUS, status):
+        yield "does not end with its state upstream, as 'Upstream-Status: Pending'"
     for line in body.split("\n"):
         if len(line) > BODY_COLUMNS:
             yield f"line of {len(line)} columns: {line}"
@@ -97,15 +102,18 @@ def main(hooks, overlay, release, series):
         else:
             passed += 1
 
-    names = sorted(os.listdir(hooks))
+    # The numbers run through all folders.
+    paths = {name: os.path.join(folder, name)
+             for folder, _, names in os.walk(hooks) for name in names}
+    names = sorted(paths)
     exported = sorted(name for name in os.listdir(series) if name.endswith(".patch"))
     for number, name in enumerate(names, 1):
-        judge(name, faults(os.path.join(hooks, name), overlay, release))
+        judge(name, faults(paths[name], overlay, release))
     judge("numbers of the hooks run from 1", (
         f"{name} is number {number}" for number, name in enumerate(names, 1)
         if not re.fullmatch(rf"{number:04}-.+\.patch", name)))
     # So that `scripts/patch refresh` leaves alone what nobody has edited
-    judge("hooks are what git format-patch writes", different(hooks, names, series, exported))
+    judge("hooks are what git format-patch writes", different(paths, names, series, exported))
     print(f"{passed} passed, {failed} failed, 0 skipped")
     return failed > 0
 
@@ -116,11 +124,11 @@ def without_author(text):
     return re.sub(rb"\nFrom: .*(\n .*)*", b"", head) + separator + rest
 
 
-def different(hooks, names, series, exported):
+def different(paths, names, series, exported):
     # The parts of the overlay, if there is one, are the first of the exported series.
     exported = exported[len(exported) - len(names):]
     for name, other in zip(names, exported):
-        with open(os.path.join(hooks, name), "rb") as ours:
+        with open(paths[name], "rb") as ours:
             with open(os.path.join(series, other), "rb") as theirs:
                 if name[4:] != other[4:] or (
                         without_author(ours.read()) != without_author(theirs.read())):

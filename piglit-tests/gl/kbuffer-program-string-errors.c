@@ -265,6 +265,43 @@ final_zeros(void *data)
 	return check_unharmed(&kb) && pass ? PIGLIT_PASS : PIGLIT_FAIL;
 }
 
+/** Other targets are as exact about strings, if they are valid otherwise. */
+static enum piglit_result
+fragment_programs(void *data)
+{
+#define MOV FP "MOV result.color, "
+	static const struct {
+		const char *string;
+		int length;
+		int first, last;
+	} bad[] = {
+#define BAD(before, token, after) \
+	{ MOV before token after, sizeof(MOV before token after) - 1, \
+	  sizeof(MOV before) - 1, sizeof(MOV before token) - 1 }
+		BAD("1", "\0", ";\nEND\n"),
+		BAD("1", "\303", "\244;\nEND\n"),
+		BAD("1;", "\n", "\0# comment\nEND\n"),
+		BAD("1; #", " ", "comment\0\nEND\n"),
+		BAD("program.env[", "4294967296", "];\nEND\n"),
+		BAD("1      ", ",", " 1;\nEND\n"),
+#undef BAD
+	};
+	static const char good[] = MOV "1; # \303\244\nEND\n\0\0";
+#undef MOV
+	bool pass;
+
+	kb_program("");
+	pass = kb_load(GL_FRAGMENT_PROGRAM_ARB, good, sizeof(good)) ==
+		GL_NO_ERROR;
+	for (int i = 0; i < ARRAY_SIZE(bad); i++) {
+		pass = check_refused(GL_FRAGMENT_PROGRAM_ARB, bad[i].string,
+				     bad[i].length, i == 2 || i == 3 ? 0 :
+				     bad[i].first, i == 2 || i == 3 ? -1 :
+				     bad[i].last) && pass;
+	}
+	return pass ? PIGLIT_PASS : PIGLIT_FAIL;
+}
+
 /** The options that mean something where there is neither fog nor color. */
 static enum piglit_result
 other_options(void *data)
@@ -338,6 +375,7 @@ const struct piglit_subtest kbuffer_subtests[] = {
 	KB_SUBTEST("truncated", truncated, NULL),
 	KB_SUBTEST("zero-byte", zero_byte, NULL),
 	KB_SUBTEST("final-zeros", final_zeros, NULL),
+	KB_SUBTEST("fragment-programs", fragment_programs, NULL),
 	KB_SUBTEST("other-options", other_options, NULL),
 	KB_SUBTEST("negative-length", negative_length, NULL),
 	KB_SUBTEST("wrong-format", wrong_format, NULL),

@@ -19,8 +19,10 @@ overlay_files() {
     [ ! -d "$overlay" ] || (cd "$overlay" && find . -type f ! -name '*~' -printf '%P\n' | LC_ALL=C sort)
 }
 
+# The hooks, in the order of their numbers, which run through all folders
 hook_files() {
-    [ ! -d "$patches/hooks" ] || find "$patches/hooks" -name '[0-9]*.patch' | LC_ALL=C sort
+    [ ! -d "$patches/hooks" ] || find "$patches/hooks" -name '[0-9]*.patch' -printf '%f\t%p\n' |
+        LC_ALL=C sort | cut -f2
 }
 
 # What a tree is made of; the contents of the overlay are not in it, because they are links.

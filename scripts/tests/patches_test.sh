@@ -6,7 +6,7 @@ make_series() {
     local debian=$work/debian
     prepare 0
     sed -i 's/three/drei/' "$project/build/mesa/src/a.c"
-    in_tree commit -qam 'a: count in German' -m 'For readers there.'
+    in_tree commit -qam 'a: count in German' -m $'For readers there.\n\nUpstream-Status: Pending'
     mkdir -p "$project/mesa-patches/overlay/src/new" "$debian/patches"
     echo new >"$project/mesa-patches/overlay/src/new/n.c"
     run 0 scripts/patch refresh
@@ -67,6 +67,14 @@ test_check_wants_a_body() {
     make_series
     sed -i '/^For readers/d' "$hook"
     is_red "says nothing of why it is there"
+}
+
+test_check_wants_the_state_upstream() {
+    make_series
+    sed -i 's/^Upstream-Status: Pending/Upstream-Status: Inappropriate/' "$hook"
+    is_red "does not end with its state upstream"
+    sed -i 's/^Upstream-Status: .*/Upstream-Status: Inappropriate [a test]/' "$hook"
+    run 0 mesa-patches/check
 }
 
 test_check_wants_a_module() {

@@ -31,6 +31,31 @@ test_patched_tree() {
     no_temporaries
 }
 
+# Hooks keep their folder, and a new one comes to that of the hook before it.
+test_hooks_in_folders() {
+    make_patches
+    local hooks=$project/mesa-patches/hooks
+    mkdir "$hooks/first"
+    mv "$hooks"/0001-*.patch "$hooks/first"
+    sed -i 's/two/zwei/' "$project/build/mesa/src/a.c"
+    in_tree commit -qam 'a: count on in German'
+    run 0 scripts/patch refresh
+    [ -f "$hooks/first/0002-a-count-on-in-German.patch" ]
+    mkdir "$hooks/later"
+    mv "$hooks"/first/0002-*.patch "$hooks/later"
+    sed -i 's/b/c/' "$project/build/mesa/src/b.c"
+    in_tree commit -qam 'b: go on'
+    run 0 scripts/patch refresh
+    [ "$(cd "$hooks" && find . -type f | LC_ALL=C sort)" = "./first/0001-a-count-in-German.patch
+./later/0002-a-count-on-in-German.patch
+./later/0003-b-go-on.patch" ]
+    rm -rf "$project/build"
+    prepare 0
+    [ "$(in_tree log --format=%s upstream..HEAD)" = "b: go on
+a: count on in German
+a: count in German" ]
+}
+
 test_only_changed_files_are_touched() {
     make_patches
     touch -d '2001-01-01' "$project"/build/mesa/src/*.c
@@ -147,6 +172,18 @@ test_export_leaves_other_files_alone() {
 }
 
 # A patch of that form is as much somebody's work as any other file, and so is an edit of ours.
+test_export_has_the_specifications() {
+    make_patches
+    mkdir "$project/ext-spec"
+    echo contract >"$project/ext-spec/MESA_a.txt"
+    run 0 scripts/patch export "$work/series"
+    grep -qx '+contract' "$work/series/0001-docs-add-the-specifications-of-the-k-buffer-extensio.patch"
+    tar -C "$work" -xJf "$work/release.tar.xz"
+    git -C "$work/mesa-0" init -q
+    git -C "$work/mesa-0" apply "$work"/series/*.patch
+    [ "$(cat "$work/mesa-0/docs/_extra/specs/MESA_a.txt")" = contract ]
+}
+
 test_export_replaces_only_what_it_wrote() {
     make_patches
     mkdir "$work/series"

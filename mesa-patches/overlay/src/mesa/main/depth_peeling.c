@@ -10,6 +10,7 @@
  */
 
 #include "main/depth_peeling.h"
+#include "main/depth_peeling_validate.h"
 #include "main/context.h"
 #include "main/draw_validate.h"
 #include "main/errors.h"
@@ -75,7 +76,7 @@ continue_at(struct gl_context *ctx, struct gl_framebuffer *fb, GLint layer,
       return;
    }
 
-   if (!st_peel_owns_object(ctx, fb)) {
+   if (_mesa_is_peeled_elsewhere(ctx, fb)) {
       _mesa_error(ctx, GL_INVALID_OPERATION,
                   "%s(framebuffer peeled by another context)", func);
       return;

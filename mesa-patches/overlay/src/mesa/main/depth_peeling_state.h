@@ -15,6 +15,7 @@
 #include "util/glheader.h"
 #include "main/formats.h"
 
+struct st_context;
 struct st_peel_object;
 
 /** Of a context. */
@@ -39,6 +40,9 @@ struct gl_framebuffer_peeling
 
    /** The driver's part, see st_peel.h; NULL until it is needed. */
    struct st_peel_object *Object;
+
+   /** Whose it is.  Other contexts read it without a lock. */
+   struct st_context *Owner;
 };
 
 #endif /* DEPTH_PEELING_STATE_H */

@@ -3,16 +3,9 @@
  * SPDX-License-Identifier: MIT
  */
 
-/**
- * \file depth_peeling_validate.c
- * Whether framebuffers have layers to peel into, and whether a draw may.
- */
-
-#include "main/depth_peeling.h"
+#include "main/depth_peeling_validate.h"
 #include "main/enums.h"
 #include "main/kbuffer.h"
-#include "state_tracker/st_context.h"
-#include "state_tracker/st_peel.h"
 
 /** Layers of an attachment that depth peeling can use, else 0. */
 static unsigned
@@ -111,9 +104,9 @@ check_draw_buffers(const struct gl_framebuffer *fb, unsigned layers,
 }
 
 bool
-_mesa_check_peel_draw(struct gl_context *ctx, char *reason)
+_mesa_check_peel_draw(const struct gl_context *ctx, char *reason)
 {
-   struct gl_framebuffer *fb = ctx->DrawBuffer;
+   const struct gl_framebuffer *fb = ctx->DrawBuffer;
    const struct gl_framebuffer_peeling *peeling = &fb->Peeling;
    struct gl_peel_order order;
 
@@ -152,26 +145,9 @@ _mesa_check_peel_draw(struct gl_context *ctx, char *reason)
       }
    }
 
-   if (!st_peel_owns_object(ctx, fb)) {
+   if (_mesa_is_peeled_elsewhere(ctx, fb)) {
       return _mesa_refuse_draw(reason, "depth peeling in a framebuffer that "
                                "another context peels into");
-   }
-
-   return true;
-}
-
-bool
-_mesa_depth_peeling_valid_to_render(struct gl_context *ctx)
-{
-   if (!ctx->DepthPeeling.Enabled)
-      return true;
-
-   if (!_mesa_check_peel_draw(ctx, NULL))
-      return false;
-
-   if (!st_peel_create_object(ctx, ctx->DrawBuffer)) {
-      ctx->DrawGLError = GL_OUT_OF_MEMORY;
-      return false;
    }
 
    return true;

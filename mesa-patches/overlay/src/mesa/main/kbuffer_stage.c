@@ -8,7 +8,7 @@
  * Which rule of the two extensions a refused draw breaks.
  */
 
-#include "main/depth_peeling.h"
+#include "main/depth_peeling_validate.h"
 #include "main/draw_validate.h"
 #include "main/errors.h"
 #include "main/kbuffer.h"
@@ -25,10 +25,6 @@ _mesa_explain_draw_error(struct gl_context *ctx, const char *caller)
        (!_mesa_kbuffer_check_draw(ctx, reason) ||
         !_mesa_check_peel_draw(ctx, reason)))
       _mesa_error(ctx, error, "%s(%s)", caller, reason);
-
-   /* What had no memory then tries again, for the next draw. */
-   if (error == GL_OUT_OF_MEMORY)
-      _mesa_update_valid_to_render_state(ctx);
 
    return error;
 }

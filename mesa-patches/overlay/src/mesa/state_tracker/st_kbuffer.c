@@ -44,7 +44,7 @@
 struct st_kbuffer_object
 {
    struct pipe_reference reference;
-   void *driver;  /**< from pipe_context::create_kbuffer_state */
+   void *driver;  /**< from pipe_kbuffer_funcs::create_program */
 };
 
 static void
@@ -55,7 +55,7 @@ reference_object(struct st_context *st, struct st_kbuffer_object **dst,
 
    if (pipe_reference(old ? &old->reference : NULL,
                       src ? &src->reference : NULL)) {
-      st->pipe->delete_kbuffer_state(st->pipe, old->driver);
+      st->pipe->kbuffer.delete_program(st->pipe, old->driver);
       FREE(old);
    }
    *dst = src;
@@ -114,14 +114,14 @@ st_kbuffer_program_notify(struct gl_context *ctx, struct gl_program *prog)
    /* The driver takes ownership of the shader. */
    state.ir.nir = translate_program(st, prog);
    void *driver =
-      state.ir.nir ? pipe->create_kbuffer_state(pipe, &state) : NULL;
+      state.ir.nir ? pipe->kbuffer.create_program(pipe, &state) : NULL;
 
    struct st_kbuffer_object *object =
       driver ? CALLOC_STRUCT(st_kbuffer_object) : NULL;
 
    if (!object) {
       if (driver)
-         pipe->delete_kbuffer_state(pipe, driver);
+         pipe->kbuffer.delete_program(pipe, driver);
       _mesa_error(ctx, GL_OUT_OF_MEMORY, "glProgramStringARB");
       return;
    }
@@ -217,7 +217,7 @@ st_kbuffer_update(struct st_context *st)
    fill_constants(st, prog, &state);
 
    if (fill_textures(st, prog, &state) &&
-       st->pipe->set_kbuffer_state(st->pipe, &state)) {
+       st->pipe->kbuffer.set_state(st->pipe, &state)) {
       reference_object(st, &st->kbuffer, object);
    } else {
       /* This draw changes nothing, the next one tries again. */
@@ -235,6 +235,6 @@ st_kbuffer_unbind(struct st_context *st)
    if (!st->kbuffer)
       return;
 
-   st->pipe->set_kbuffer_state(st->pipe, &state);
+   st->pipe->kbuffer.set_state(st->pipe, &state);
    st_kbuffer_release_object(st, &st->kbuffer);
 }

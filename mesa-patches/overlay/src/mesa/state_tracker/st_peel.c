@@ -11,7 +11,7 @@
  */
 
 #include "main/context.h"
-#include "main/depth_peeling.h"
+#include "main/depth_peeling_validate.h"
 #include "main/errors.h"
 #include "main/renderbuffer.h"
 
@@ -30,11 +30,21 @@ struct st_peel_object
    struct st_peel_object *next;   /**< in st_context::peel_objects */
    struct st_context *st;         /**< the owner */
    struct gl_framebuffer *fb;     /**< NULL: deleted by another context */
-   void *driver;                  /**< from pipe_context::create_peel_object */
+   void *driver;                  /**< from pipe_kbuffer_funcs::create_peel_object */
 };
 
 /** Protects the links between framebuffers and objects in both directions. */
 static simple_mtx_t link_mutex = SIMPLE_MTX_INITIALIZER;
+
+static void
+take_state_back(struct st_context *st)
+{
+   const struct pipe_kbuffer_state state = { 0 };
+
+   if (st->peel)
+      st->pipe->kbuffer.set_state(st->pipe, &state);
+   st->peel = NULL;
+}
 
 /** Delete an object that is out of its context's list. */
 static void
@@ -43,14 +53,11 @@ delete_object(struct st_peel_object *object)
    struct st_context *st = object->st;
 
    if (st->peel == object) {
-      const struct pipe_kbuffer_state state = { 0 };
-
-      st->pipe->set_kbuffer_state(st->pipe, &state);
-      st->peel = NULL;
+      take_state_back(st);
       st->ctx->NewDriverState |= ST_NEW_BLEND;
    }
 
-   st->pipe->delete_peel_object(st->pipe, object->driver);
+   st->pipe->kbuffer.delete_peel_object(st->pipe, object->driver);
    FREE(object);
 }
 
@@ -76,19 +83,21 @@ delete_orphans(struct st_context *st)
    }
 }
 
-bool
-st_peel_owns_object(struct gl_context *ctx, struct gl_framebuffer *fb)
+/** Link a framebuffer with its object, or with none; the mutex is held. */
+static void
+set_object(struct gl_framebuffer *fb, struct st_peel_object *object)
 {
-   simple_mtx_lock(&link_mutex);
-   const struct st_peel_object *object = fb->Peeling.Object;
-   const bool owns = !object || object->st == ctx->st;
-   simple_mtx_unlock(&link_mutex);
-
-   return owns;
+   fb->Peeling.Object = object;
+   p_atomic_set(&fb->Peeling.Owner, object ? object->st : NULL);
 }
 
-bool
-st_peel_create_object(struct gl_context *ctx, struct gl_framebuffer *fb)
+/**
+ * Give a framebuffer an object if it has none, in a context that may own it.
+ *
+ * \return false if there is no memory
+ */
+static bool
+create_object(struct gl_context *ctx, struct gl_framebuffer *fb)
 {
    struct st_context *st = ctx->st;
 
@@ -100,7 +109,7 @@ st_peel_create_object(struct gl_context *ctx, struct gl_framebuffer *fb)
    if (!object)
       return false;
 
-   object->driver = st->pipe->create_peel_object(st->pipe);
+   object->driver = st->pipe->kbuffer.create_peel_object(st->pipe);
    if (!object->driver) {
       FREE(object);
       return false;
@@ -114,7 +123,7 @@ st_peel_create_object(struct gl_context *ctx, struct gl_framebuffer *fb)
 
    simple_mtx_lock(&link_mutex);
    object->fb = fb;
-   fb->Peeling.Object = object;
+   set_object(fb, object);
    simple_mtx_unlock(&link_mutex);
 
    return true;
@@ -132,11 +141,11 @@ st_peel_start_over(struct gl_context *ctx, struct gl_framebuffer *fb)
 {
    struct pipe_context *pipe = ctx->pipe;
 
-   if (!st_peel_owns_object(ctx, fb)) {
+   if (_mesa_is_peeled_elsewhere(ctx, fb)) {
       st_peel_release_object(fb);
    } else if (fb->Peeling.Object) {
       /* Needs no memory. */
-      pipe->advance_peel_object(pipe, fb->Peeling.Object->driver, NULL,
+      pipe->kbuffer.advance_peel_object(pipe, fb->Peeling.Object->driver, NULL,
                                 PIPE_FUNC_LESS, ctx->Depth.Clear);
    }
 }
@@ -148,7 +157,7 @@ st_peel_continue(struct gl_context *ctx, struct gl_framebuffer *fb,
    struct pipe_context *pipe = ctx->pipe;
    struct gl_renderbuffer *rb = fb->Attachment[BUFFER_DEPTH].Renderbuffer;
 
-   if (!st_peel_create_object(ctx, fb))
+   if (!create_object(ctx, fb))
       return false;
 
    /* No draw is valid before the framebuffer starts over. */
@@ -165,7 +174,7 @@ st_peel_continue(struct gl_context *ctx, struct gl_framebuffer *fb,
       _mesa_regen_renderbuffer_surface(ctx, rb);
 
    return rb->surface &&
-          pipe->advance_peel_object(pipe, fb->Peeling.Object->driver,
+          pipe->kbuffer.advance_peel_object(pipe, fb->Peeling.Object->driver,
                                     rb->surface,
                                     compare_func(order->DepthFunc),
                                     ctx->Depth.Clear);
@@ -177,10 +186,10 @@ st_peel_overflow(struct gl_context *ctx, struct gl_framebuffer *fb)
    struct pipe_context *pipe = ctx->pipe;
 
    /* What another context has drawn is that context's to ask for. */
-   if (!st_peel_owns_object(ctx, fb) || !fb->Peeling.Object)
+   if (_mesa_is_peeled_elsewhere(ctx, fb) || !fb->Peeling.Object)
       return false;
 
-   return pipe->get_peel_overflow(pipe, fb->Peeling.Object->driver);
+   return pipe->kbuffer.get_peel_overflow(pipe, fb->Peeling.Object->driver);
 }
 
 void
@@ -192,7 +201,7 @@ st_peel_release_object(struct gl_framebuffer *fb)
    struct st_peel_object *object = fb->Peeling.Object;
    const bool owns = object && ctx && object->st == ctx->st;
 
-   fb->Peeling.Object = NULL;
+   set_object(fb, NULL);
    if (object)
       object->fb = NULL;
    simple_mtx_unlock(&link_mutex);
@@ -201,50 +210,53 @@ st_peel_release_object(struct gl_framebuffer *fb)
       delete_orphans(ctx->st);
 }
 
-/** The object that draws must use, NULL when they do not peel. */
-static struct st_peel_object *
-draw_object(struct gl_context *ctx)
+/** What draws that peel need in the pipe; false if there is no memory. */
+static bool
+set_state(struct st_context *st)
 {
-   /* Draw validation has looked at the same, but not in contexts without
-    * errors.
-    */
-   if (!ctx->DepthPeeling.Enabled || !_mesa_check_peel_draw(ctx, NULL) ||
-       !st_peel_create_object(ctx, ctx->DrawBuffer))
-      return NULL;
+   struct gl_context *ctx = st->ctx;
+   struct gl_framebuffer *fb = ctx->DrawBuffer;
 
-   return ctx->DrawBuffer->Peeling.Object;
+   if (!create_object(ctx, fb))
+      return false;
+
+   const struct pipe_kbuffer_state state = {
+      .peel = {
+         .object = fb->Peeling.Object->driver,
+         .func = compare_func(ctx->Depth.Func),
+         .writemask = ctx->Depth.Mask,
+         .empty_depth = ctx->Depth.Clear,
+      },
+   };
+
+   /* A program's state would be taken back only after this. */
+   st_kbuffer_unbind(st);
+   if (!st->pipe->kbuffer.set_state(st->pipe, &state))
+      return false;
+
+   st->peel = fb->Peeling.Object;
+   return true;
 }
 
 bool
 st_peel_update(struct st_context *st)
 {
    struct gl_context *ctx = st->ctx;
-   struct st_peel_object *object = draw_object(ctx);
-   struct pipe_kbuffer_state state = { 0 };
 
-   if (object) {
-      state.peel.object = object->driver;
-      state.peel.func = compare_func(ctx->Depth.Func);
-      state.peel.writemask = ctx->Depth.Mask;
-      state.peel.empty_depth = ctx->Depth.Clear;
-
-      /* A program's state would be taken back only after this. */
-      st_kbuffer_unbind(st);
+   /* Contexts without errors draw what draw validation would have refused. */
+   if (!ctx->DepthPeeling.Enabled || !_mesa_check_peel_draw(ctx, NULL)) {
+      take_state_back(st);
+      return false;
    }
 
-   if (!object && !st->peel)
-      return false;
-
-   if (st->pipe->set_kbuffer_state(st->pipe, &state)) {
-      st->peel = object;
-   } else {
+   if (!set_state(st)) {
       /* This draw changes nothing, the next one tries again. */
-      st->peel = NULL;
+      take_state_back(st);
       ctx->NewDriverState |= ST_NEW_BLEND;
       _mesa_error(ctx, GL_OUT_OF_MEMORY, "glDraw*");
    }
 
-   return object != NULL;
+   return true;
 }
 
 void

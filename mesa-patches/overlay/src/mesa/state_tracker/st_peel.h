@@ -26,18 +26,6 @@
 extern "C" {
 #endif
 
-/** Whether the object of \p fb is this context's, or is still missing. */
-bool
-st_peel_owns_object(struct gl_context *ctx, struct gl_framebuffer *fb);
-
-/**
- * Give \p fb an object if it has none, in a context that owns it.
- *
- * \return false if there is no memory.
- */
-bool
-st_peel_create_object(struct gl_context *ctx, struct gl_framebuffer *fb);
-
 /** Begin at rank 0 and forget the overflow. */
 void
 st_peel_start_over(struct gl_context *ctx, struct gl_framebuffer *fb);

@@ -16,9 +16,9 @@
 #include "gallivm/lp_bld_tgsi.h"
 
 #include "lp_bld_kbuf_format.h"
+#include "lp_bld_tile.h"
 #include "lp_jit.h"
 #include "lp_kbuf.h"
-#include "lp_kbuf_tile.h"
 #include "lp_state_fs.h"
 #include "lp_tex_sample.h"
 
@@ -29,35 +29,9 @@ struct kbuf_context
    struct gallivm_state *gallivm;
    const struct lp_build_kbuf_params *params;
    struct lp_build_mask_context mask;
+   struct lp_build_tile tile;
    struct lp_kbuf_pixels pixels[LP_MAX_KBUF_ENTRIES];
 };
-
-
-static LLVMValueRef
-byte_offset(struct gallivm_state *gallivm, LLVMValueRef ptr,
-            LLVMValueRef offset)
-{
-   LLVMTypeRef int8_type = LLVMInt8TypeInContext(gallivm->context);
-
-   return LLVMBuildGEP2(gallivm->builder, int8_type, ptr, &offset, 1, "");
-}
-
-
-/**
- * Load a pointer that lies in a structure.  The two in lp_jit_thread_data have
- * no place in its LLVM type because that is in the code of variants without
- * the stage, too.
- */
-static LLVMValueRef
-load_ptr(struct gallivm_state *gallivm, LLVMValueRef base, size_t offset)
-{
-   LLVMTypeRef ptr_type =
-      LLVMPointerType(LLVMInt8TypeInContext(gallivm->context), 0);
-
-   return LLVMBuildLoad2(gallivm->builder, ptr_type,
-                         byte_offset(gallivm, base,
-                                     lp_build_const_int32(gallivm, offset)), "");
-}
 
 
 /** The LLVM type of struct lp_jit_kbuf_resources. */
@@ -118,105 +92,108 @@ rename_texture_functions(struct gallivm_state *gallivm)
 }
 
 
-/** Have the block copied if no fragment has come to it before. */
+/** The pixels of an entry of which the place is not known yet. */
 static void
-load_tile_block(struct gallivm_state *gallivm, LLVMValueRef tile,
-                LLVMValueRef block)
+init_pixels(struct kbuf_context *ctx, unsigned entry)
 {
-   LLVMBuilderRef builder = gallivm->builder;
-   LLVMTypeRef int8_type = LLVMInt8TypeInContext(gallivm->context);
-   LLVMTypeRef arg_types[2] = {
-      LLVMPointerType(int8_type, 0), LLVMInt32TypeInContext(gallivm->context)
-   };
-   LLVMTypeRef func_type =
-      LLVMFunctionType(LLVMVoidTypeInContext(gallivm->context), arg_types, 2, 0);
-   LLVMValueRef valid =
-      byte_offset(gallivm, tile,
-                  lp_build_const_int32(gallivm,
-                                       offsetof(struct lp_kbuf_tile, valid)));
-   struct lp_build_if_state invalid;
+   const struct lp_build_kbuf_params *params = ctx->params;
+   const unsigned cbuf = entry % params->kbuf->num_color_buffers;
+   struct lp_kbuf_pixels *pixels = &ctx->pixels[entry];
 
-   valid = LLVMBuildLoad2(builder, int8_type,
-                          byte_offset(gallivm, valid, block), "valid");
-   lp_build_if(&invalid, gallivm,
-               LLVMBuildICmp(builder, LLVMIntEQ, valid,
-                             LLVMConstInt(int8_type, 0, 0), ""));
-   {
-      LLVMValueRef args[2] = { tile, block };
-      LLVMValueRef func = load_ptr(gallivm, tile,
-                                   offsetof(struct lp_kbuf_tile, load_block));
-
-      LLVMBuildCall2(builder, func_type, func, args, 2, "");
-   }
-   lp_build_endif(&invalid);
+   pixels->gallivm = ctx->gallivm;
+   pixels->type = params->type;
+   pixels->desc = util_format_description(params->key->cbuf_format[cbuf]);
 }
 
 
-/** The pointers to the group's pixels in the thread's copy of the tile. */
+/** Find the group's pixels of each entry in the tile store. */
 static void
-locate_tile_entries(struct kbuf_context *ctx)
+locate_in_tile(struct kbuf_context *ctx)
+{
+   const struct lp_build_kbuf_params *params = ctx->params;
+   const struct lp_fragment_shader_variant_key *key = params->key;
+   struct gallivm_state *gallivm = ctx->gallivm;
+   const unsigned num_cbufs = params->kbuf->num_color_buffers;
+   struct lp_tile_layout layout;
+
+   lp_tile_layout_init(&layout, false, 1,
+                       lp_kbuf_num_layers(key->kbuf.num_entries, num_cbufs),
+                       num_cbufs, key->cbuf_format, key->nr_cbufs);
+   lp_build_tile_begin(&ctx->tile, gallivm, params, LP_TILE_ALL);
+
+   LLVMValueRef words =
+      lp_build_tile_words(&ctx->tile, params->group,
+                          lp_build_const_int32(gallivm,
+                                               lp_tile_block_size(&layout)));
+
+   for (unsigned e = 0; e < key->kbuf.num_entries; e++) {
+      const unsigned layer = e / num_cbufs, cbuf = e % num_cbufs;
+
+      if (layout.color_words[cbuf]) {
+         init_pixels(ctx, e);
+         ctx->pixels[e].tile = &ctx->tile;
+         ctx->pixels[e].words =
+            lp_build_const_offset(gallivm, words,
+                                  layer * lp_tile_layer_size(&layout) +
+                                  lp_tile_color_word(&layout, cbuf) *
+                                  LP_TILE_WORD_SIZE);
+      }
+   }
+}
+
+
+/** The first pixel of the group in a color buffer, in its first layer. */
+static LLVMValueRef
+group_in_buffer(struct kbuf_context *ctx, unsigned cbuf, LLVMValueRef stride)
 {
    const struct lp_build_kbuf_params *params = ctx->params;
    const struct lp_fragment_shader_variant_key *key = params->key;
    struct gallivm_state *gallivm = ctx->gallivm;
    LLVMBuilderRef builder = gallivm->builder;
-   const unsigned num_cbufs = params->kbuf->num_color_buffers;
-   struct lp_kbuf_layout layout;
+   LLVMTypeRef int32_type = LLVMInt32TypeInContext(gallivm->context);
+   LLVMTypeRef ptr_type =
+      LLVMPointerType(LLVMInt8TypeInContext(gallivm->context), 0);
+   LLVMValueRef index = lp_build_const_int32(gallivm, cbuf);
+   LLVMValueRef one = lp_build_const_int32(gallivm, 1);
+   LLVMValueRef row = params->group;
+   LLVMValueRef ptr = lp_build_pointer_get2(builder, ptr_type,
+                                            params->color_ptr_ptr, index);
 
-   lp_kbuf_layout_init(&layout, key->kbuf.num_entries, num_cbufs,
-                       key->cbuf_format, key->nr_cbufs);
+   /* Two groups of a single quad lie side by side. */
+   if (params->type.length == 4) {
+      const unsigned bits = util_format_get_blocksizebits(key->cbuf_format[cbuf]);
+      LLVMValueRef column = LLVMBuildAnd(builder, row, one, "");
 
-   LLVMValueRef tile =
-      load_ptr(gallivm, params->thread_data_ptr,
-               offsetof(struct lp_jit_thread_data, kbuf_tile));
-
-   /* block = y / 4 % 16 * 16 + x / 4 % 16 */
-   LLVMValueRef y = LLVMBuildShl(builder, params->y,
-                                 lp_build_const_int32(gallivm, 2), "");
-   LLVMValueRef x = LLVMBuildLShr(builder, params->x,
-                                  lp_build_const_int32(gallivm, 2), "");
-   y = LLVMBuildAnd(builder, y, lp_build_const_int32(gallivm, 0xf0), "");
-   x = LLVMBuildAnd(builder, x, lp_build_const_int32(gallivm, 0xf), "");
-   STATIC_ASSERT(TILE_SIZE == 64);
-   LLVMValueRef block = LLVMBuildOr(builder, y, x, "block");
-
-   load_tile_block(gallivm, tile, block);
-
-   LLVMValueRef words = load_ptr(gallivm, tile,
-                                 offsetof(struct lp_kbuf_tile, data));
-   LLVMValueRef offset =
-      LLVMBuildMul(builder, block,
-                   lp_build_const_int32(gallivm,
-                                        layout.size * LP_KBUF_WORD_SIZE), "");
-   words = byte_offset(gallivm, words, offset);
-   offset = LLVMBuildMul(builder, params->group,
-                         lp_build_const_int32(gallivm, params->type.length * 4), "");
-   words = byte_offset(gallivm, words, offset);
-
-   for (unsigned e = 0; e < key->kbuf.num_entries; e++) {
-      struct lp_kbuf_pixels *pixels = &ctx->pixels[e];
-      const unsigned cbuf = e % num_cbufs;
-
-      if (cbuf >= key->nr_cbufs || key->cbuf_format[cbuf] == PIPE_FORMAT_NONE)
-         continue;
-
-      pixels->gallivm = gallivm;
-      pixels->type = params->type;
-      pixels->desc = util_format_description(key->cbuf_format[cbuf]);
-      pixels->words =
-         byte_offset(gallivm, words,
-                     lp_build_const_int32(gallivm,
-                                          layout.offset[e] * LP_KBUF_WORD_SIZE));
+      row = LLVMBuildLShr(builder, row, one, "");
+      ptr = lp_build_byte_offset(gallivm, ptr,
+                                 LLVMBuildMul(builder, column,
+                                              lp_build_const_int32(gallivm, bits / 8 * 2),
+                                              ""));
    }
+   ptr = lp_build_byte_offset(gallivm, ptr,
+                              LLVMBuildMul(builder, stride,
+                                           LLVMBuildShl(builder, row, one, ""),
+                                           ""));
+
+   if (key->cbuf_nr_samples[cbuf] > 1) {
+      LLVMValueRef sample_stride =
+         lp_build_pointer_get2(builder, int32_type,
+                               params->color_sample_stride_ptr, index);
+
+      ptr = lp_build_byte_offset(gallivm, ptr,
+                                 LLVMBuildMul(builder, sample_stride,
+                                              params->sample, ""));
+   }
+   return ptr;
 }
 
 
 /**
- * The pointers to the group's rows in each entry; an entry without a buffer
- * gets none.
+ * Find the group's rows of each entry in the color buffers; an entry without a
+ * buffer gets none.
  */
 static void
-locate_entries(struct kbuf_context *ctx, LLVMValueRef jit_kbuf)
+locate_in_buffers(struct kbuf_context *ctx, LLVMValueRef jit_kbuf)
 {
    const struct lp_build_kbuf_params *params = ctx->params;
    const struct lp_fragment_shader_variant_key *key = params->key;
@@ -224,68 +201,33 @@ locate_entries(struct kbuf_context *ctx, LLVMValueRef jit_kbuf)
    LLVMBuilderRef builder = gallivm->builder;
    LLVMTypeRef int32_type = LLVMInt32TypeInContext(gallivm->context);
    LLVMTypeRef int64_type = LLVMInt64TypeInContext(gallivm->context);
-   LLVMTypeRef ptr_type =
-      LLVMPointerType(LLVMInt8TypeInContext(gallivm->context), 0);
    const unsigned num_cbufs = params->kbuf->num_color_buffers;
 
    for (unsigned cbuf = 0; cbuf < MIN2(num_cbufs, key->nr_cbufs); cbuf++) {
-      const struct util_format_description *desc =
-         util_format_description(key->cbuf_format[cbuf]);
       LLVMValueRef index = lp_build_const_int32(gallivm, cbuf);
-      LLVMValueRef group = params->group;
-      LLVMValueRef x_offset = NULL;
 
       if (key->cbuf_format[cbuf] == PIPE_FORMAT_NONE)
          continue;
 
-      LLVMValueRef base = lp_build_pointer_get2(builder, ptr_type,
-                                                params->color_ptr_ptr, index);
       LLVMValueRef stride =
          lp_build_pointer_get2(builder, int32_type, params->color_stride_ptr,
                                index);
       LLVMValueRef layer_stride = lp_build_pointer_get2(builder, int64_type,
                                                         jit_kbuf, index);
-
-      /* Two groups of a single quad lie side by side. */
-      if (params->type.length == 4) {
-         LLVMValueRef one = lp_build_const_int32(gallivm, 1);
-
-         x_offset = LLVMBuildAnd(builder, group, one, "");
-         x_offset = LLVMBuildMul(builder, x_offset,
-                                 lp_build_const_int32(gallivm, desc->block.bits / 8 * 2),
-                                 "");
-         group = LLVMBuildLShr(builder, group, one, "");
-      }
-
-      LLVMValueRef y_offset =
-         LLVMBuildMul(builder, stride,
-                      LLVMBuildShl(builder, group,
-                                   lp_build_const_int32(gallivm, 1), ""), "");
-      base = byte_offset(gallivm, base, y_offset);
-      if (x_offset)
-         base = byte_offset(gallivm, base, x_offset);
-
-      if (key->cbuf_nr_samples[cbuf] > 1) {
-         LLVMValueRef sample_stride =
-            lp_build_pointer_get2(builder, int32_type,
-                                  params->color_sample_stride_ptr, index);
-         base = byte_offset(gallivm, base,
-                            LLVMBuildMul(builder, sample_stride,
-                                         params->sample, ""));
-      }
+      LLVMValueRef first = group_in_buffer(ctx, cbuf, stride);
 
       for (unsigned e = cbuf; e < key->kbuf.num_entries; e += num_cbufs) {
-         struct lp_kbuf_pixels *pixels = &ctx->pixels[e];
          LLVMValueRef layer = LLVMConstInt(int64_type, e / num_cbufs, 0);
+         struct lp_kbuf_pixels *pixels = &ctx->pixels[e];
 
-         pixels->gallivm = gallivm;
-         pixels->type = params->type;
-         pixels->desc = desc;
+         init_pixels(ctx, e);
          pixels->rows[0] =
-            byte_offset(gallivm, base,
-                        LLVMBuildMul(builder, layer_stride, layer, ""));
-         if (!key->resource_1d)
-            pixels->rows[1] = byte_offset(gallivm, pixels->rows[0], stride);
+            lp_build_byte_offset(gallivm, first,
+                                 LLVMBuildMul(builder, layer_stride, layer, ""));
+         if (!key->resource_1d) {
+            pixels->rows[1] = lp_build_byte_offset(gallivm, pixels->rows[0],
+                                                   stride);
+         }
       }
    }
 }
@@ -418,9 +360,8 @@ build_program(struct kbuf_context *ctx, LLVMValueRef jit_kbuf)
    nir_params.context_ptr = params->context_ptr;
    nir_params.resources_type = resources_type(gallivm, params->resources_type);
    nir_params.resources_ptr =
-      byte_offset(gallivm, jit_kbuf,
-                  lp_build_const_int32(gallivm,
-                                       offsetof(struct lp_jit_kbuf, resources)));
+      lp_build_const_offset(gallivm, jit_kbuf,
+                            offsetof(struct lp_jit_kbuf, resources));
    nir_params.consts_ptr =
       lp_jit_resources_constants(gallivm, nir_params.resources_type,
                                  nir_params.resources_ptr);
@@ -432,6 +373,27 @@ build_program(struct kbuf_context *ctx, LLVMValueRef jit_kbuf)
 
    lp_bld_llvm_sampler_soa_destroy(sampler);
    ralloc_free(nir);
+}
+
+
+LLVMValueRef
+lp_build_kbuf_begin_denormals(struct gallivm_state *gallivm,
+                              const struct lp_fragment_shader_variant_key *key)
+{
+   bool needed = false;
+
+   for (unsigned i = 0; i < key->nr_cbufs; i++) {
+      const struct util_format_description *desc =
+         util_format_description(key->cbuf_format[i]);
+
+      needed |= lp_kbuf_format_needs_denormals(desc);
+   }
+   if (!needed)
+      return NULL;
+
+   LLVMValueRef fpstate = lp_build_fpstate_get(gallivm);
+   lp_build_fpstate_set_denorms_zero(gallivm, false);
+   return fpstate;
 }
 
 
@@ -450,38 +412,29 @@ lp_build_kbuf_stage(struct gallivm_state *gallivm,
       .params = params,
    };
    struct kbuf_context *ctx = &context;
-   LLVMValueRef fpstate = NULL;
 
    assert(params->type.length == 4 || params->type.length == 8);
    if (!params->kbuf->program)
       return params->mask;
 
-   bool denormals = false;
-   for (unsigned i = 0; i < key->nr_cbufs; i++) {
-      const struct util_format_description *desc =
-         util_format_description(key->cbuf_format[i]);
-
-      denormals |= lp_kbuf_format_needs_denormals(desc);
-   }
-   if (denormals) {
-      fpstate = lp_build_fpstate_get(gallivm);
-      lp_build_fpstate_set_denorms_zero(gallivm, false);
-   }
+   LLVMValueRef fpstate = lp_build_kbuf_begin_denormals(gallivm, key);
 
    lp_build_mask_begin(&ctx->mask, gallivm, params->type, params->mask);
    lp_build_mask_check(&ctx->mask);
 
+   LLVMValueRef store =
+      lp_build_tile_store_ptr(gallivm, params->thread_data_ptr);
    LLVMValueRef jit_kbuf =
-      load_ptr(gallivm, params->thread_data_ptr,
-               offsetof(struct lp_jit_thread_data, kbuf));
+      lp_build_load_ptr_at(gallivm, store,
+                           offsetof(struct lp_tile_store, kbuf));
    if (key->kbuf.tiled)
-      locate_tile_entries(ctx);
+      locate_in_tile(ctx);
    else
-      locate_entries(ctx, jit_kbuf);
+      locate_in_buffers(ctx, jit_kbuf);
    build_program(ctx, jit_kbuf);
 
    LLVMValueRef alive = lp_build_mask_end(&ctx->mask);
-   if (denormals)
+   if (fpstate)
       lp_build_fpstate_set(gallivm, fpstate);
 
    return alive;

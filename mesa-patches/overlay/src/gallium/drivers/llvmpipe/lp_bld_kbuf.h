@@ -44,6 +44,16 @@ struct lp_build_kbuf_params
    LLVMValueRef color_sample_stride_ptr;
 };
 
+/**
+ * Have denormals kept, which are zeros in raster threads, if the conversions of
+ * the color buffers' formats need them.
+ *
+ * \return what lp_build_fpstate_set() has to get afterwards, or NULL
+ */
+LLVMValueRef
+lp_build_kbuf_begin_denormals(struct gallivm_state *gallivm,
+                              const struct lp_fragment_shader_variant_key *key);
+
 /** \return the lanes that the program has not discarded */
 LLVMValueRef
 lp_build_kbuf_stage(struct gallivm_state *gallivm,

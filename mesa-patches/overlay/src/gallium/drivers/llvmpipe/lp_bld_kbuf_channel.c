@@ -20,63 +20,6 @@ int_type(const struct lp_kbuf_pixels *pixels, unsigned width)
 }
 
 
-LLVMValueRef
-lp_build_kbuf_decode_channel(const struct lp_kbuf_pixels *pixels,
-                             const struct util_format_channel_description *chan,
-                             const LLVMValueRef words[4])
-{
-   struct gallivm_state *gallivm = pixels->gallivm;
-   LLVMBuilderRef builder = gallivm->builder;
-   const struct lp_type type = pixels->type;
-   const struct lp_type itype = lp_int_type(type);
-   LLVMTypeRef vec_type = lp_build_vec_type(gallivm, type);
-   const unsigned start = chan->shift % 32;
-   LLVMValueRef value = words[chan->shift / 32];
-
-   /* Bring the channel to the top, then down, with its sign if it has one. */
-   if (chan->size < 32 && chan->type != UTIL_FORMAT_TYPE_VOID) {
-      const unsigned left = 32 - start - chan->size;
-      LLVMValueRef down = lp_build_const_int_vec(gallivm, itype,
-                                                 32 - chan->size);
-
-      if (left)
-         value = LLVMBuildShl(builder, value,
-                              lp_build_const_int_vec(gallivm, itype, left), "");
-      value = chan->type == UTIL_FORMAT_TYPE_SIGNED ?
-         LLVMBuildAShr(builder, value, down, "") :
-         LLVMBuildLShr(builder, value, down, "");
-   }
-
-   switch (chan->type) {
-   case UTIL_FORMAT_TYPE_UNSIGNED:
-      return lp_build_unsigned_norm_to_float(gallivm, chan->size, type, value);
-
-   case UTIL_FORMAT_TYPE_SIGNED: {
-      struct lp_build_context bld;
-      const double max = (1ULL << (chan->size - 1)) - 1;
-
-      lp_build_context_init(&bld, gallivm, type);
-      value = LLVMBuildSIToFP(builder, value, vec_type, "");
-      value = LLVMBuildFMul(builder, value,
-                            lp_build_const_vec(gallivm, type, 1.0 / max), "");
-      return lp_build_max(&bld, value, lp_build_const_vec(gallivm, type, -1.0));
-   }
-
-   case UTIL_FORMAT_TYPE_FLOAT:
-      if (chan->size == 16) {
-         value = LLVMBuildTrunc(builder, value,
-                                int_type(pixels, 16), "");
-         return lp_build_half_to_float(gallivm, value);
-      }
-      assert(chan->size == 32);
-      return LLVMBuildBitCast(builder, value, vec_type, "");
-
-   default:
-      return LLVMGetUndef(vec_type);
-   }
-}
-
-
 /** Integers are in the guise of floats.  They are clamped. */
 static LLVMValueRef
 encode_integer(const struct lp_kbuf_pixels *pixels,

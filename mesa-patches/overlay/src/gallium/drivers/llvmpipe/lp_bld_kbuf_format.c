@@ -15,7 +15,7 @@
 #include "gallivm/lp_bld_swizzle.h"
 
 #include "lp_bld_kbuf_channel.h"
-#include "lp_kbuf_tile.h"
+#include "lp_bld_tile.h"
 
 #define MAX_LANES 8
 
@@ -160,7 +160,7 @@ load_2_words(const struct lp_kbuf_pixels *pixels, LLVMValueRef words[2])
       rows[i] = load(pixels, row_type, i, 0, length / 2);
 
    for (unsigned w = 0; w < 2; w++) {
-      unsigned lanes[MAX_LANES];
+      unsigned lanes[MAX_LANES] = { 0 };
 
       for (unsigned quad = 0; quad < length; quad += 4) {
          lanes[quad + 0] = quad + w;
@@ -238,42 +238,18 @@ store_aos(const struct lp_kbuf_pixels *pixels, const LLVMValueRef aos[4])
 
 
 /*
- * Pixels in the copy of the tile.
+ * Words of pixels, wherever they are.
  */
-
-static LLVMValueRef
-tile_word_ptr(const struct lp_kbuf_pixels *pixels, unsigned w)
-{
-   LLVMValueRef offset =
-      lp_build_const_int32(pixels->gallivm, w * LP_KBUF_WORD_SIZE);
-
-   return LLVMBuildGEP2(pixels->gallivm->builder,
-                        LLVMInt8TypeInContext(pixels->gallivm->context),
-                        pixels->words, &offset, 1, "");
-}
-
-
-static LLVMValueRef
-load_tile_word(const struct lp_kbuf_pixels *pixels, unsigned w)
-{
-   LLVMValueRef word =
-      LLVMBuildLoad2(pixels->gallivm->builder,
-                     int_type(pixels, 32, pixels->type.length),
-                     tile_word_ptr(pixels, w), "");
-
-   LLVMSetAlignment(word, pixels->type.length * 4);
-   return word;
-}
-
 
 static void
 load_words(const struct lp_kbuf_pixels *pixels, LLVMValueRef words[4])
 {
    LLVMValueRef aos[4];
 
-   if (pixels->words) {
+   if (pixels->tile) {
       for (unsigned w = 0; w < num_words(pixels); w++)
-         words[w] = load_tile_word(pixels, w);
+         words[w] = lp_build_tile_load(pixels->tile, pixels->words,
+                                       w * LP_TILE_WORD_SIZE);
       return;
    }
 
@@ -293,68 +269,37 @@ load_words(const struct lp_kbuf_pixels *pixels, LLVMValueRef words[4])
 }
 
 
-static LLVMValueRef
-select_lanes(const struct lp_kbuf_pixels *pixels, LLVMValueRef mask,
-             LLVMValueRef a, LLVMValueRef b)
-{
-   LLVMBuilderRef builder = pixels->gallivm->builder;
-
-   /* The sign, because that is what a blend instruction looks at. */
-   mask = LLVMBuildICmp(builder, LLVMIntSLT, mask,
-                        LLVMConstNull(LLVMTypeOf(mask)), "");
-   return LLVMBuildSelect(builder, mask, a, b, "");
-}
-
-
-/**
- * Store the given bits of the words in the lanes of mask.
- */
+/** Store the given bits of the words in the lanes of mask. */
 static void
 store_words(const struct lp_kbuf_pixels *pixels, LLVMValueRef mask,
             const LLVMValueRef new_words[4], const uint32_t bits[4])
 {
-   struct gallivm_state *gallivm = pixels->gallivm;
-   LLVMBuilderRef builder = gallivm->builder;
-   const struct lp_type type = lp_int_type(pixels->type);
    LLVMValueRef old[4], words[4];
+   struct lp_build_context bld;
 
+   lp_build_context_init(&bld, pixels->gallivm, lp_int_type(pixels->type));
    load_words(pixels, old);
-   for (unsigned w = 0; w < num_words(pixels); w++) {
-      if (!bits[w]) {
-         words[w] = old[w];
-      } else if (!~bits[w]) {
-         words[w] = select_lanes(pixels, mask, new_words[w], old[w]);
-      } else {
-         /* Lanes by bits, too: LLVM 19 gets a select between the old value
-          * and bits of it wrong with AVX-512 (a masked vpternlog).
-          */
-         LLVMValueRef changed =
-            LLVMBuildAnd(builder, mask,
-                         lp_build_const_int_vec(gallivm, type, bits[w]), "");
-         words[w] = LLVMBuildXor(builder, old[w], new_words[w], "");
-         words[w] = LLVMBuildAnd(builder, words[w], changed, "");
-         words[w] = LLVMBuildXor(builder, words[w], old[w], "");
-      }
-   }
+   for (unsigned w = 0; w < num_words(pixels); w++)
+      words[w] = lp_build_merge_bits(&bld, mask, bits[w], new_words[w], old[w]);
 
-   if (pixels->words) {
+   if (pixels->tile) {
       for (unsigned w = 0; w < num_words(pixels); w++) {
          if (bits[w]) {
-            LLVMValueRef instr = LLVMBuildStore(builder, words[w],
-                                                tile_word_ptr(pixels, w));
-            LLVMSetAlignment(instr, pixels->type.length * 4);
+            lp_build_tile_store(pixels->tile, words[w], pixels->words,
+                                w * LP_TILE_WORD_SIZE);
          }
       }
-   } else if (num_words(pixels) == 1)
+   } else if (num_words(pixels) == 1) {
       store_1_word(pixels, words);
-   else
+   } else {
       store_2_words(pixels, words);
+   }
 }
 
 
 /**
- * The same where a pixel takes so many words that it is cheaper to select
- * whole pixels as they lie in memory.
+ * Store the given bits of words in the lanes of mask, where a pixel has so many
+ * words that it is cheaper to select whole pixels as they lie in memory.
  */
 static void
 store_words_aos(const struct lp_kbuf_pixels *pixels, LLVMValueRef mask,
@@ -364,7 +309,9 @@ store_words_aos(const struct lp_kbuf_pixels *pixels, LLVMValueRef mask,
    const unsigned length = pixels->type.length;
    LLVMValueRef words[4], old[4], aos[4], written[MAX_LANES];
    LLVMTypeRef vec_type = int_type(pixels, 32, length);
+   struct lp_build_context bld;
 
+   lp_build_context_init(&bld, gallivm, lp_int_type(pixels->type));
    for (unsigned w = 0; w < 4; w++) {
       assert(!bits[w] || !~bits[w]);
       words[w] = bits[w] ? new_words[w] : LLVMGetUndef(vec_type);
@@ -383,7 +330,7 @@ store_words_aos(const struct lp_kbuf_pixels *pixels, LLVMValueRef mask,
       LLVMValueRef pixel_mask = shuffle(pixels, mask, mask, lanes, length);
       pixel_mask = LLVMBuildAnd(gallivm->builder, pixel_mask,
                                 LLVMConstVector(written, length), "");
-      aos[i] = select_lanes(pixels, pixel_mask, aos[i], old[i]);
+      aos[i] = lp_build_merge_bits(&bld, pixel_mask, ~0u, aos[i], old[i]);
    }
    store_aos(pixels, aos);
 }
@@ -401,31 +348,74 @@ lp_kbuf_format_needs_denormals(const struct util_format_description *desc)
 }
 
 
-void
-lp_build_kbuf_load(const struct lp_kbuf_pixels *pixels, LLVMValueRef rgba[4])
+/**
+ * A format of 32 bits of which each word of a larger pixel is one: all channels
+ * of such a pixel are alike, and each has 16 or 32 bits.
+ */
+static enum pipe_format
+word_format(const struct util_format_description *desc)
 {
-   const struct util_format_description *desc = pixels->desc;
-   struct gallivm_state *gallivm = pixels->gallivm;
-   LLVMValueRef words[4], channels[4];
-   struct lp_build_context bld;
+   const struct util_format_channel_description *chan = &desc->channel[0];
 
-   load_words(pixels, words);
+   if (chan->size == 32)
+      return PIPE_FORMAT_R32_FLOAT;
 
-   lp_build_context_init(&bld, gallivm, pixels->type);
-   if (desc->format == PIPE_FORMAT_R11G11B10_FLOAT) {
-      lp_build_r11g11b10_to_float(gallivm, words[0], rgba);
-      rgba[3] = bld.one;
-   } else if (desc->colorspace == UTIL_FORMAT_COLORSPACE_SRGB) {
-      lp_build_unpack_rgba_soa(gallivm, desc, pixels->type, words[0], rgba);
-   } else {
-      for (unsigned c = 0; c < desc->nr_channels; c++)
-         channels[c] = lp_build_kbuf_decode_channel(pixels, &desc->channel[c], words);
-      lp_build_format_swizzle_soa(desc, &bld, channels, rgba);
+   assert(chan->size == 16);
+   switch (chan->type) {
+   case UTIL_FORMAT_TYPE_FLOAT:
+      return PIPE_FORMAT_R16G16_FLOAT;
+   case UTIL_FORMAT_TYPE_SIGNED:
+      return PIPE_FORMAT_R16G16_SNORM;
+   default:
+      return PIPE_FORMAT_R16G16_UNORM;
    }
 }
 
 
-/** The channel that holds a component, or NULL. */
+/** Components of a pixel of several words. */
+static void
+unpack_words(const struct lp_kbuf_pixels *pixels, const LLVMValueRef *words,
+             LLVMValueRef rgba[4])
+{
+   const struct util_format_description *desc = pixels->desc;
+   const struct util_format_description *word =
+      util_format_description(word_format(desc));
+   LLVMValueRef channels[8];
+   struct lp_build_context bld;
+
+   for (unsigned w = 0; w < num_words(pixels); w++) {
+      LLVMValueRef components[4];
+
+      lp_build_unpack_rgba_soa(pixels->gallivm, word, pixels->type, words[w],
+                               components);
+      memcpy(&channels[w * word->nr_channels], components,
+             word->nr_channels * sizeof components[0]);
+   }
+   lp_build_context_init(&bld, pixels->gallivm, pixels->type);
+   lp_build_format_swizzle_soa(desc, &bld, channels, rgba);
+}
+
+
+void
+lp_build_kbuf_load(const struct lp_kbuf_pixels *pixels, LLVMValueRef rgba[4])
+{
+   struct gallivm_state *gallivm = pixels->gallivm;
+   LLVMValueRef words[4];
+
+   load_words(pixels, words);
+   if (pixels->desc->format == PIPE_FORMAT_R11G11B10_FLOAT) {
+      lp_build_r11g11b10_to_float(gallivm, words[0], rgba);
+      rgba[3] = lp_build_one(gallivm, pixels->type);
+   } else if (num_words(pixels) == 1) {
+      lp_build_unpack_rgba_soa(gallivm, pixels->desc, pixels->type, words[0],
+                               rgba);
+   } else {
+      unpack_words(pixels, words, rgba);
+   }
+}
+
+
+/** The channel that a format's description has for a component, or NULL. */
 static const struct util_format_channel_description *
 component_channel(const struct util_format_description *desc, unsigned comp)
 {
@@ -450,7 +440,7 @@ static const struct util_format_channel_description r11g11b10_channels[3] = {
 };
 
 
-/** The same for formats of which the description does not tell. */
+/** The channel that holds a component in any format, or NULL. */
 static const struct util_format_channel_description *
 stored_channel(const struct util_format_description *desc, unsigned comp)
 {
@@ -536,7 +526,7 @@ lp_build_kbuf_store(const struct lp_kbuf_pixels *pixels,
       return;
 
    lp_build_kbuf_encode(pixels, write_mask, rgba, words);
-   if (num_words(pixels) > 2 && !pixels->words)
+   if (num_words(pixels) > 2 && !pixels->tile)
       store_words_aos(pixels, mask, words, bits);
    else
       store_words(pixels, mask, words, bits);

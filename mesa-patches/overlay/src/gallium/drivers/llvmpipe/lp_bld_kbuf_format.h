@@ -13,8 +13,7 @@
  * belongs to one thread, and every texture is padded to whole blocks.  Only
  * an explicit 1D resource has a single row.
  *
- * In the thread's copy of the tile (lp_kbuf_tile.h) they are such vectors
- * already.
+ * In the tile store (lp_tile_store.h) pixels are such vectors already.
  */
 
 #ifndef LP_BLD_KBUF_FORMAT_H
@@ -25,6 +24,7 @@
 #include "util/format/u_format.h"
 
 struct gallivm_state;
+struct lp_build_tile;
 
 struct lp_kbuf_pixels
 {
@@ -32,7 +32,8 @@ struct lp_kbuf_pixels
    struct lp_type type;        /**< float vectors of 4 or 8 lanes */
    const struct util_format_description *desc;
    LLVMValueRef rows[2];       /**< byte pointers, [1] is NULL in 1D */
-   LLVMValueRef words;         /**< or this, in the thread's copy of the tile */
+   const struct lp_build_tile *tile; /**< NULL: in the buffer itself */
+   LLVMValueRef words;         /**< in the tile, in the place of rows */
 };
 
 /** Whether conversions need denormals, which are off in raster threads. */
@@ -48,8 +49,9 @@ lp_kbuf_format_bits(const struct util_format_description *desc,
                     unsigned write_mask, uint32_t *bits);
 
 /**
- * Those bits, as a color is stored without blending; others are anything.
- * Uses neither rows nor words of pixels.
+ * The words of a pixel in which the bits of lp_kbuf_format_bits() are as a color
+ * is stored without blending; other bits are anything.  Uses neither rows nor
+ * words of pixels.
  */
 void
 lp_build_kbuf_encode(const struct lp_kbuf_pixels *pixels, unsigned write_mask,

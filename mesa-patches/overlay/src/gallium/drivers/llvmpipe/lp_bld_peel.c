@@ -12,10 +12,9 @@
 #include "gallivm/lp_bld_flow.h"
 #include "gallivm/lp_bld_init.h"
 #include "gallivm/lp_bld_logic.h"
-#include "gallivm/lp_bld_struct.h"
+#include "gallivm/lp_bld_swizzle.h"
 
 #include "lp_bld_kbuf_format.h"
-#include "lp_jit.h"
 
 
 LLVMValueRef
@@ -65,40 +64,6 @@ lp_build_peel_depth(struct gallivm_state *gallivm,
 }
 
 
-/**
- * Have the block loaded if no fragment has come to it before.
- *
- * \param func  offset in lp_peel_tile
- */
-static void
-load_block(struct peel_context *ctx, enum lp_peel_valid needed, size_t func)
-{
-   struct gallivm_state *gallivm = ctx->gallivm;
-   LLVMTypeRef int8_type = LLVMInt8TypeInContext(gallivm->context);
-   LLVMTypeRef arg_types[2] = {
-      LLVMPointerType(int8_type, 0), LLVMInt32TypeInContext(gallivm->context)
-   };
-   LLVMTypeRef func_type =
-      LLVMFunctionType(LLVMVoidTypeInContext(gallivm->context), arg_types, 2, 0);
-   struct lp_build_if_state invalid;
-
-   LLVMValueRef valid =
-      const_offset(ctx, ctx->tile, offsetof(struct lp_peel_tile, valid));
-   valid = LLVMBuildLoad2(ctx->builder, int8_type,
-                          byte_offset(ctx, valid, ctx->block), "valid");
-   lp_build_if(&invalid, gallivm,
-               LLVMBuildICmp(ctx->builder, LLVMIntULT, valid,
-                             LLVMConstInt(int8_type, needed, 0), ""));
-   {
-      LLVMValueRef args[2] = { ctx->tile, ctx->block };
-
-      LLVMBuildCall2(ctx->builder, func_type, load_ptr(ctx, ctx->tile, func),
-                     args, 2, "");
-   }
-   lp_build_endif(&invalid);
-}
-
-
 /** Which words a pixel has, and which bits of them move. */
 static void
 init_words(struct peel_context *ctx)
@@ -108,104 +73,114 @@ init_words(struct peel_context *ctx)
    ctx->num_words = 1;
    ctx->bits[0] = ~0u;
    for (unsigned i = 0; i < key->nr_cbufs; i++) {
-      const unsigned num_words = lp_peel_color_words(key->cbuf_format[i]);
+      const struct util_format_description *desc =
+         util_format_description(key->cbuf_format[i]);
+      const unsigned colormask = key->blend.rt[i].colormask;
+      uint32_t *bits = &ctx->bits[ctx->num_words];
 
-      if (num_words) {
-         const struct util_format_description *desc =
-            util_format_description(key->cbuf_format[i]);
-         const unsigned colormask = key->blend.rt[i].colormask;
-         uint32_t *bits = &ctx->bits[ctx->num_words];
+      if (key->cbuf_format[i] == PIPE_FORMAT_NONE)
+         continue;
 
-         /* Padding moves with all components, for speed. */
-         if (util_format_colormask_full(desc, colormask))
-            memset(bits, 0xff, num_words * sizeof *bits);
-         else
-            lp_kbuf_format_bits(desc, colormask, bits);
-         ctx->num_words += num_words;
-      }
+      /* Padding moves with all components, for speed. */
+      const unsigned num_words = DIV_ROUND_UP(desc->block.bits, 32);
+      if (util_format_colormask_full(desc, colormask))
+         memset(bits, 0xff, num_words * sizeof *bits);
+      else
+         lp_kbuf_format_bits(desc, colormask, bits);
+      ctx->num_words += num_words;
    }
 }
 
 
-/** Find the group's pixels in the thread's tile. */
+/** A number for each sample of blocks, in the order in which they lie. */
+static LLVMValueRef
+sample_index(struct peel_context *ctx, LLVMValueRef block)
+{
+   struct gallivm_state *gallivm = ctx->gallivm;
+   LLVMBuilderRef builder = gallivm->builder;
+   const unsigned num_samples = ctx->params->key->zsbuf_nr_samples;
+
+   if (num_samples <= 1)
+      return block;
+
+   block = LLVMBuildMul(builder, block,
+                        lp_build_const_int32(gallivm, num_samples), "");
+   return LLVMBuildAdd(builder, block, ctx->params->sample, "");
+}
+
+
+/** Find the layers of the group. */
+static void
+locate_layers(struct peel_context *ctx)
+{
+   struct gallivm_state *gallivm = ctx->gallivm;
+   LLVMBuilderRef builder = gallivm->builder;
+   const struct lp_build_kbuf_params *params = ctx->params;
+   LLVMValueRef store = ctx->tile.store;
+
+   ctx->layers =
+      lp_build_tile_words(&ctx->tile, params->group,
+                          lp_build_load_int32_at(gallivm, store,
+                                                 offsetof(struct lp_tile_store,
+                                                          block_size)));
+   if (params->key->zsbuf_nr_samples > 1) {
+      LLVMValueRef sample_size =
+         lp_build_load_int32_at(gallivm, store,
+                                offsetof(struct lp_tile_store, sample_size));
+
+      ctx->layers =
+         lp_build_byte_offset(gallivm, ctx->layers,
+                              LLVMBuildMul(builder, params->sample, sample_size,
+                                           ""));
+   }
+}
+
+
+/** Find the last layer of the group that is there. */
+static void
+locate_last_layer(struct peel_context *ctx)
+{
+   struct gallivm_state *gallivm = ctx->gallivm;
+   LLVMBuilderRef builder = gallivm->builder;
+   LLVMValueRef counts =
+      lp_build_load_ptr_at(gallivm, ctx->tile.store,
+                           offsetof(struct lp_tile_store, counts));
+   LLVMValueRef index = sample_index(ctx, ctx->tile.block);
+
+   index = LLVMBuildMul(builder, index,
+                        lp_build_const_int32(gallivm, LP_TILE_GROUPS), "");
+   index = LLVMBuildAdd(builder, index, ctx->params->group, "");
+   index = LLVMBuildMul(builder, index, lp_build_const_int32(gallivm, 4), "");
+   ctx->count_ptr = lp_build_byte_offset(gallivm, counts, index);
+   ctx->last = lp_build_load_int32_at(gallivm, ctx->count_ptr, 0);
+
+   LLVMValueRef layer_size =
+      lp_build_const_int32(gallivm, ctx->num_words * LP_TILE_WORD_SIZE);
+   ctx->last_ptr =
+      lp_build_byte_offset(gallivm, ctx->layers,
+                           LLVMBuildMul(builder, ctx->last, layer_size, ""));
+}
+
+
+/** Find the group in the tile store. */
 static void
 peel_begin(struct peel_context *ctx, struct gallivm_state *gallivm,
            const struct lp_build_kbuf_params *params,
-           enum lp_peel_valid needed)
+           enum lp_tile_valid needed)
 {
-   LLVMBuilderRef builder = gallivm->builder;
-
    memset(ctx, 0, sizeof *ctx);
    ctx->gallivm = gallivm;
-   ctx->builder = builder;
    ctx->params = params;
    ctx->key = &params->key->kbuf.peel;
-   ctx->type = lp_int_type(params->type);
-   ctx->vec_type = lp_build_vec_type(gallivm, ctx->type);
    init_words(ctx);
-
-   ctx->tile = load_ptr(ctx, params->thread_data_ptr,
-                        offsetof(struct lp_jit_thread_data, peel_tile));
-
-   /* block = y / 4 % 16 * 16 + x / 4 % 16 */
-   LLVMValueRef y = LLVMBuildShl(builder, params->y,
-                                 lp_build_const_int32(gallivm, 2), "");
-   LLVMValueRef x = LLVMBuildLShr(builder, params->x,
-                                  lp_build_const_int32(gallivm, 2), "");
-   y = LLVMBuildAnd(builder, y, lp_build_const_int32(gallivm, 0xf0), "");
-   x = LLVMBuildAnd(builder, x, lp_build_const_int32(gallivm, 0xf), "");
-   STATIC_ASSERT(TILE_SIZE == 64);
-   ctx->block = LLVMBuildOr(builder, y, x, "block");
-
-   load_block(ctx, needed,
-              needed == LP_PEEL_LAST ? offsetof(struct lp_peel_tile, load_last) :
-                                       offsetof(struct lp_peel_tile, load_block));
-
-   /* Offsets need more than 32 bits with many layers. */
-   LLVMTypeRef int64_type = LLVMInt64TypeInContext(gallivm->context);
-   LLVMValueRef offset =
-      LLVMBuildMul(builder,
-                   LLVMBuildZExt(builder, ctx->block, int64_type, ""),
-                   LLVMBuildZExt(builder,
-                                 load_int32(ctx, ctx->tile,
-                                            offsetof(struct lp_peel_tile, block_size)),
-                                 int64_type, ""), "");
-   ctx->layers = byte_offset(ctx, load_ptr(ctx, ctx->tile,
-                                           offsetof(struct lp_peel_tile, data)),
-                             offset);
-
-   LLVMValueRef index = ctx->block;
-   const unsigned num_samples = MAX2(params->key->zsbuf_nr_samples, 1);
-   if (num_samples > 1) {
-      LLVMValueRef sample_size =
-         load_int32(ctx, ctx->tile, offsetof(struct lp_peel_tile, sample_size));
-
-      ctx->layers = byte_offset(ctx, ctx->layers,
-                                LLVMBuildMul(builder, params->sample,
-                                             sample_size, ""));
-      index = LLVMBuildMul(builder, index,
-                           lp_build_const_int32(gallivm, num_samples), "");
-      index = LLVMBuildAdd(builder, index, params->sample, "");
-   }
-
-   offset = LLVMBuildMul(builder, params->group,
-                         lp_build_const_int32(gallivm, ctx->type.length * 4), "");
-   ctx->layers = byte_offset(ctx, ctx->layers, offset);
-
-   index = LLVMBuildMul(builder, index,
-                        lp_build_const_int32(gallivm, LP_PEEL_GROUPS), "");
-   index = LLVMBuildAdd(builder, index, params->group, "");
-   index = LLVMBuildMul(builder, index, lp_build_const_int32(gallivm, 4), "");
-   ctx->count_ptr = byte_offset(ctx, load_ptr(ctx, ctx->tile,
-                                              offsetof(struct lp_peel_tile, counts)),
-                                index);
-   ctx->last = load_int32(ctx, ctx->count_ptr, 0);
-   ctx->last_ptr =
-      byte_offset(ctx, ctx->layers,
-                  LLVMBuildMul(builder, ctx->last,
-                               lp_build_const_int32(gallivm,
-                                                    ctx->num_words * LP_PEEL_WORD_SIZE),
-                               ""));
+   lp_build_tile_begin(&ctx->tile, gallivm, params, needed);
+   locate_layers(ctx);
+   locate_last_layer(ctx);
+   ctx->empty =
+      lp_build_broadcast_scalar(&ctx->tile.bld,
+                                lp_build_load_int32_at(gallivm, ctx->tile.store,
+                                                       offsetof(struct lp_tile_store,
+                                                                empty)));
 }
 
 
@@ -213,51 +188,51 @@ peel_begin(struct peel_context *ctx, struct gallivm_state *gallivm,
 static void
 note_overflow(struct peel_context *ctx, LLVMValueRef mask)
 {
+   struct gallivm_state *gallivm = ctx->gallivm;
    struct lp_build_if_state overflow;
 
-   lp_build_if(&overflow, ctx->gallivm, any(ctx, mask));
-   LLVMBuildStore(ctx->builder, lp_build_const_int32(ctx->gallivm, 1),
-                  const_offset(ctx, ctx->tile,
-                               offsetof(struct lp_peel_tile, overflow)));
+   lp_build_if(&overflow, gallivm, any_lane(ctx, mask));
+   LLVMBuildStore(gallivm->builder, lp_build_const_int32(gallivm, 1),
+                  lp_build_const_offset(gallivm, ctx->tile.store,
+                                        offsetof(struct lp_tile_store, overflow)));
    lp_build_endif(&overflow);
 }
 
 
-/** The group's part of its lp_peel_bound. */
+/** The group in the lp_peel_bound of its block and sample. */
 static LLVMValueRef
 bound_ptr(struct peel_context *ctx)
 {
    struct gallivm_state *gallivm = ctx->gallivm;
-   LLVMBuilderRef builder = ctx->builder;
-   const struct lp_build_kbuf_params *params = ctx->params;
-   const unsigned num_samples = MAX2(params->key->zsbuf_nr_samples, 1);
+   LLVMBuilderRef builder = gallivm->builder;
    LLVMTypeRef int64_type = LLVMInt64TypeInContext(gallivm->context);
+   LLVMValueRef store = ctx->tile.store;
 
-   LLVMValueRef x = LLVMBuildAnd(builder, ctx->block,
+   LLVMValueRef x = LLVMBuildAnd(builder, ctx->tile.block,
                                  lp_build_const_int32(gallivm, 0xf), "");
-   LLVMValueRef y = LLVMBuildLShr(builder, ctx->block,
+   LLVMValueRef y = LLVMBuildLShr(builder, ctx->tile.block,
                                   lp_build_const_int32(gallivm, 4), "");
+   LLVMValueRef blocks_x =
+      lp_build_load_int32_at(gallivm, store,
+                             offsetof(struct lp_tile_store, bound_blocks_x));
    LLVMValueRef index =
-      LLVMBuildMul(builder, y,
-                   load_int32(ctx, ctx->tile,
-                              offsetof(struct lp_peel_tile, bound_blocks_x)), "");
-   index = LLVMBuildAdd(builder, index, x, "");
-   if (num_samples > 1) {
-      index = LLVMBuildMul(builder, index,
-                           lp_build_const_int32(gallivm, num_samples), "");
-      index = LLVMBuildAdd(builder, index, params->sample, "");
-   }
-   index = LLVMBuildMul(builder, LLVMBuildZExt(builder, index, int64_type, ""),
+      LLVMBuildAdd(builder, LLVMBuildMul(builder, y, blocks_x, ""), x, "");
+
+   index = LLVMBuildZExt(builder, sample_index(ctx, index), int64_type, "");
+   index = LLVMBuildMul(builder, index,
                         LLVMConstInt(int64_type, sizeof(struct lp_peel_bound), 0),
                         "");
 
    LLVMValueRef ptr =
-      byte_offset(ctx, load_ptr(ctx, ctx->tile,
-                                offsetof(struct lp_peel_tile, bounds)), index);
-   return byte_offset(ctx, ptr,
-                      LLVMBuildMul(builder, params->group,
-                                   lp_build_const_int32(gallivm, ctx->type.length * 4),
-                                   ""));
+      lp_build_byte_offset(gallivm,
+                           lp_build_load_ptr_at(gallivm, store,
+                                                offsetof(struct lp_tile_store,
+                                                         bounds)), index);
+   return lp_build_byte_offset(gallivm, ptr,
+                               LLVMBuildMul(builder, ctx->params->group,
+                                            lp_build_const_int32(gallivm,
+                                                                 ctx->tile.bld.type.length * 4),
+                                            ""));
 }
 
 
@@ -268,60 +243,68 @@ lp_build_peel_cull(struct gallivm_state *gallivm,
    LLVMValueRef depth = params->pos[2];
    struct peel_context ctx;
 
-   peel_begin(&ctx, gallivm, params, LP_PEEL_LAST);
+   peel_begin(&ctx, gallivm, params, LP_TILE_LAST);
 
-   LLVMValueRef empty =
-      broadcast(&ctx, load_int32(&ctx, ctx.tile,
-                                 offsetof(struct lp_peel_tile, empty)));
-   LLVMValueRef mask = and(&ctx, params->mask, less(&ctx, depth, empty));
-   LLVMValueRef counted = NULL;
+   struct lp_build_context *bld = &ctx.tile.bld;
+   LLVMValueRef last = lp_build_tile_load(&ctx.tile, ctx.last_ptr, 0);
+   LLVMValueRef taken = is_nearer(&ctx, depth, last);
+   LLVMValueRef mask =
+      lp_build_and(bld, params->mask,
+                   lp_build_cmp(bld, PIPE_FUNC_LESS, depth, ctx.empty));
 
    if (ctx.key->bounded) {
       LLVMValueRef bound =
-         load_vec(&ctx, bound_ptr(&ctx), offsetof(struct lp_peel_bound, depth));
+         lp_build_tile_load(&ctx.tile, bound_ptr(&ctx),
+                            offsetof(struct lp_peel_bound, depth));
 
-      mask = and_not(&ctx, mask, less(&ctx, depth, bound));
-      /* Each one at this depth has to be counted. */
-      counted = and(&ctx, mask, equal(&ctx, depth, bound));
+      mask = lp_build_andnot(bld, mask,
+                             lp_build_cmp(bld, PIPE_FUNC_LESS, depth, bound));
+      /* Each fragment at this depth has to be counted. */
+      taken = lp_build_or(bld, taken,
+                          lp_build_and(bld, mask,
+                                       lp_build_cmp(bld, PIPE_FUNC_EQUAL, depth,
+                                                    bound)));
    }
-
-   LLVMValueRef taken = passes(&ctx, depth, load_vec(&ctx, ctx.last_ptr, 0));
-   if (counted)
-      taken = LLVMBuildOr(ctx.builder, taken, counted, "");
-   note_overflow(&ctx, and_not(&ctx, mask, taken));
-   return and(&ctx, mask, taken);
+   note_overflow(&ctx, lp_build_andnot(bld, mask, taken));
+   return lp_build_and(bld, mask, taken);
 }
 
 
 /**
- * The lanes of which the fragment takes part: nearer than an empty layer, and
- * behind the bound.  Counts those that arrive at it.
+ * The lanes of which the fragment is nearer than an empty layer, and behind
+ * the bound.  Counts those that arrive at it.
  */
 static LLVMValueRef
-take_part(struct peel_context *ctx, LLVMValueRef depth)
+within_bounds(struct peel_context *ctx, LLVMValueRef depth)
 {
-   LLVMValueRef empty =
-      broadcast(ctx, load_int32(ctx, ctx->tile,
-                                offsetof(struct lp_peel_tile, empty)));
-   LLVMValueRef mask = and(ctx, ctx->params->mask, less(ctx, depth, empty));
+   struct lp_build_context *bld = &ctx->tile.bld;
+   LLVMValueRef mask =
+      lp_build_and(bld, ctx->params->mask,
+                   lp_build_cmp(bld, PIPE_FUNC_LESS, depth, ctx->empty));
 
    if (!ctx->key->bounded)
       return mask;
 
    LLVMValueRef ptr = bound_ptr(ctx);
    LLVMValueRef bound =
-      load_vec(ctx, ptr, offsetof(struct lp_peel_bound, depth));
-   LLVMValueRef kept = load_vec(ctx, ptr, offsetof(struct lp_peel_bound, kept));
-   LLVMValueRef seen = load_vec(ctx, ptr, offsetof(struct lp_peel_bound, seen));
+      lp_build_tile_load(&ctx->tile, ptr, offsetof(struct lp_peel_bound, depth));
+   LLVMValueRef kept =
+      lp_build_tile_load(&ctx->tile, ptr, offsetof(struct lp_peel_bound, kept));
+   LLVMValueRef seen =
+      lp_build_tile_load(&ctx->tile, ptr, offsetof(struct lp_peel_bound, seen));
 
-   LLVMValueRef arrived = and(ctx, mask, equal(ctx, depth, bound));
-   LLVMValueRef is_new = and_not(ctx, arrived, less(ctx, seen, kept));
-   LLVMValueRef behind = and(ctx, mask, less(ctx, bound, depth));
+   LLVMValueRef arrived =
+      lp_build_and(bld, mask, lp_build_cmp(bld, PIPE_FUNC_EQUAL, depth, bound));
+   LLVMValueRef is_new =
+      lp_build_andnot(bld, arrived, lp_build_cmp(bld, PIPE_FUNC_LESS, seen, kept));
+   LLVMValueRef behind =
+      lp_build_and(bld, mask, lp_build_cmp(bld, PIPE_FUNC_LESS, bound, depth));
 
    /* The mask is -1. */
-   store_vec(ctx, LLVMBuildSub(ctx->builder, seen, arrived, ""), ptr,
-             offsetof(struct lp_peel_bound, seen));
-   return LLVMBuildOr(ctx->builder, behind, is_new, "");
+   lp_build_tile_store(&ctx->tile,
+                       LLVMBuildSub(ctx->gallivm->builder, seen, arrived, ""),
+                       ptr, offsetof(struct lp_peel_bound, seen));
+   return lp_build_or(bld, behind, is_new);
 }
 
 
@@ -331,34 +314,69 @@ encode_fragment(struct peel_context *ctx, LLVMValueRef depth)
 {
    const struct lp_build_kbuf_params *params = ctx->params;
    const struct lp_fragment_shader_variant_key *key = params->key;
-   LLVMValueRef fpstate = NULL;
-   bool denormals = false;
-
-   for (unsigned i = 0; i < key->nr_cbufs; i++) {
-      denormals |=
-         lp_kbuf_format_needs_denormals(util_format_description(key->cbuf_format[i]));
-   }
-   if (denormals) {
-      fpstate = lp_build_fpstate_get(ctx->gallivm);
-      lp_build_fpstate_set_denorms_zero(ctx->gallivm, false);
-   }
+   LLVMValueRef fpstate = lp_build_kbuf_begin_denormals(ctx->gallivm, key);
 
    ctx->fragment[0] = depth;
    for (unsigned i = 0, w = 1; i < key->nr_cbufs; i++) {
-      if (key->cbuf_format[i] == PIPE_FORMAT_NONE)
-         continue;
-
+      const struct util_format_description *desc =
+         util_format_description(key->cbuf_format[i]);
       const struct lp_kbuf_pixels pixels = {
          .gallivm = ctx->gallivm,
          .type = params->type,
-         .desc = util_format_description(key->cbuf_format[i]),
+         .desc = desc,
       };
-      lp_build_kbuf_encode(&pixels, 0xf, params->colors[i], &ctx->fragment[w]);
-      w += lp_peel_color_words(key->cbuf_format[i]);
-   }
 
-   if (denormals)
+      if (key->cbuf_format[i] != PIPE_FORMAT_NONE) {
+         lp_build_kbuf_encode(&pixels, 0xf, params->colors[i],
+                              &ctx->fragment[w]);
+         w += DIV_ROUND_UP(desc->block.bits, 32);
+      }
+   }
+   if (fpstate)
       lp_build_fpstate_set(ctx->gallivm, fpstate);
+}
+
+
+/** If there is room behind the last layer that is there, repeat it there. */
+static void
+append_layer(struct peel_context *ctx, LLVMValueRef *last)
+{
+   struct gallivm_state *gallivm = ctx->gallivm;
+   LLVMBuilderRef builder = gallivm->builder;
+   const int layer_size = ctx->num_words * LP_TILE_WORD_SIZE;
+   LLVMValueRef last_layer =
+      lp_build_load_int32_at(gallivm, ctx->tile.store,
+                             offsetof(struct lp_tile_store, last_layer));
+   struct lp_build_if_state not_full;
+
+   lp_build_if(&not_full, gallivm,
+               LLVMBuildICmp(builder, LLVMIntULT, ctx->last, last_layer, ""));
+   {
+      LLVMValueRef count =
+         LLVMBuildAdd(builder, ctx->last, lp_build_const_int32(gallivm, 1), "");
+
+      LLVMBuildStore(builder, count, ctx->count_ptr);
+      for (unsigned w = 0; w < ctx->num_words; w++) {
+         lp_build_tile_store(&ctx->tile, last[w], ctx->last_ptr,
+                             layer_size + w * LP_TILE_WORD_SIZE);
+      }
+   }
+   lp_build_endif(&not_full);
+}
+
+
+static void
+mark_changed(struct peel_context *ctx)
+{
+   struct gallivm_state *gallivm = ctx->gallivm;
+   LLVMTypeRef int8_type = LLVMInt8TypeInContext(gallivm->context);
+   LLVMValueRef changed =
+      lp_build_const_offset(gallivm, ctx->tile.store,
+                            offsetof(struct lp_tile_store, changed));
+
+   LLVMBuildStore(gallivm->builder,
+                  LLVMConstInt(int8_type, LP_TILE_CHANGED | LP_TILE_UNKNOWN, 0),
+                  lp_build_byte_offset(gallivm, changed, ctx->tile.block));
 }
 
 
@@ -367,67 +385,41 @@ lp_build_peel_stage(struct gallivm_state *gallivm,
                     const struct lp_build_kbuf_params *params)
 {
    LLVMBuilderRef builder = gallivm->builder;
-   LLVMValueRef depth = params->pos[2];
-   LLVMTypeRef int8_type = LLVMInt8TypeInContext(gallivm->context);
-   struct lp_build_if_state alive, inserted, not_full;
+   LLVMTypeRef mask_type = LLVMTypeOf(params->mask);
+   LLVMValueRef result = lp_build_alloca(gallivm, mask_type, "peel_inserted");
+   struct lp_build_if_state alive, inserted;
+   struct lp_build_context bld;
    struct peel_context ctx;
    LLVMValueRef last[MAX_WORDS];
 
-   LLVMTypeRef mask_type = LLVMTypeOf(params->mask);
-   LLVMValueRef result = lp_build_alloca(gallivm, mask_type, "peel_inserted");
    LLVMBuildStore(builder, LLVMConstNull(mask_type), result);
+   lp_build_context_init(&bld, gallivm, lp_int_type(params->type));
+   lp_build_if(&alive, gallivm,
+               lp_build_any_true_range(&bld, bld.type.length, params->mask));
+   peel_begin(&ctx, gallivm, params, LP_TILE_ALL);
+   last[0] = lp_build_tile_load(&ctx.tile, ctx.last_ptr, 0);
 
-   memset(&ctx, 0, sizeof ctx);
-   ctx.gallivm = gallivm;
-   ctx.builder = builder;
-   ctx.type = lp_int_type(params->type);
-   ctx.vec_type = mask_type;
-
-   lp_build_if(&alive, gallivm, any(&ctx, params->mask));
-
-   peel_begin(&ctx, gallivm, params, LP_PEEL_ALL);
-   last[0] = load_vec(&ctx, ctx.last_ptr, 0);
-
-   LLVMValueRef mask = take_part(&ctx, depth);
-   LLVMValueRef empty =
-      broadcast(&ctx, load_int32(&ctx, ctx.tile,
-                                 offsetof(struct lp_peel_tile, empty)));
-   LLVMValueRef active = and(&ctx, mask, passes(&ctx, depth, last[0]));
+   LLVMValueRef depth = params->pos[2];
+   LLVMValueRef mask = within_bounds(&ctx, depth);
+   LLVMValueRef active =
+      lp_build_and(&bld, mask, is_nearer(&ctx, depth, last[0]));
 
    /* Either the fragment falls out, or what is in the last layer. */
-   note_overflow(&ctx, and(&ctx, mask, less(&ctx, last[0], empty)));
+   note_overflow(&ctx,
+                 lp_build_and(&bld, mask,
+                              lp_build_cmp(&bld, PIPE_FUNC_LESS, last[0],
+                                           ctx.empty)));
    LLVMBuildStore(builder, active, result);
 
-   lp_build_if(&inserted, gallivm, any(&ctx, active));
+   lp_build_if(&inserted, gallivm, any_lane(&ctx, active));
    {
-      const int layer_size = ctx.num_words * LP_PEEL_WORD_SIZE;
-
-      for (unsigned w = 1; w < ctx.num_words; w++)
-         last[w] = load_vec(&ctx, ctx.last_ptr, w * LP_PEEL_WORD_SIZE);
-      encode_fragment(&ctx, depth);
-
-      LLVMValueRef last_layer =
-         load_int32(&ctx, ctx.tile, offsetof(struct lp_peel_tile, last_layer));
-      lp_build_if(&not_full, gallivm,
-                  LLVMBuildICmp(builder, LLVMIntULT, ctx.last, last_layer, ""));
-      {
-         LLVMValueRef count =
-            LLVMBuildAdd(builder, ctx.last, lp_build_const_int32(gallivm, 1), "");
-
-         LLVMBuildStore(builder, count, ctx.count_ptr);
-         for (unsigned w = 0; w < ctx.num_words; w++) {
-            store_vec(&ctx, last[w], ctx.last_ptr,
-                      layer_size + w * LP_PEEL_WORD_SIZE);
-         }
+      for (unsigned w = 1; w < ctx.num_words; w++) {
+         last[w] = lp_build_tile_load(&ctx.tile, ctx.last_ptr,
+                                      w * LP_TILE_WORD_SIZE);
       }
-      lp_build_endif(&not_full);
-
-      LLVMValueRef changed =
-         const_offset(&ctx, ctx.tile, offsetof(struct lp_peel_tile, changed));
-      LLVMBuildStore(builder,
-                     LLVMConstInt(int8_type, LP_PEEL_CHANGED | LP_PEEL_UNKNOWN, 0),
-                     byte_offset(&ctx, changed, ctx.block));
-
+      encode_fragment(&ctx, depth);
+      append_layer(&ctx, last);
+      mark_changed(&ctx);
       lp_build_peel_insert(&ctx, active, last);
    }
    lp_build_endif(&inserted);

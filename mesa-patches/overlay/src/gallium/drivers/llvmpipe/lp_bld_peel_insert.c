@@ -7,6 +7,19 @@
 
 #include "gallivm/lp_bld_flow.h"
 
+/** Layers that are moved at once where all lanes agree. */
+#define STEP 4
+
+
+/** The loop from the last layer to the front. */
+struct insert_loop
+{
+   LLVMBasicBlockRef head;
+   LLVMValueRef ptr;              /**< to the layer that is looked at */
+   LLVMValueRef active;           /**< lanes in which the fragment goes before it */
+   LLVMValueRef words[MAX_WORDS]; /**< of that layer */
+};
+
 
 /** Store new words of a layer in the lanes of active; the others keep theirs. */
 static void
@@ -14,21 +27,12 @@ store_layer(struct peel_context *ctx, LLVMValueRef ptr, LLVMValueRef active,
             const LLVMValueRef *words, const LLVMValueRef *old)
 {
    for (unsigned w = 0; w < ctx->num_words; w++) {
-      LLVMValueRef value;
-
-      if (!ctx->bits[w])
-         continue;
-      if (!~ctx->bits[w]) {
-         value = select_lanes(ctx, active, words[w], old[w]);
-      } else {
-         /* See store_words() in lp_bld_kbuf_format.c. */
-         LLVMValueRef changed =
-            and(ctx, active, lp_build_const_int_vec(ctx->gallivm, ctx->type,
-                                                    ctx->bits[w]));
-         value = LLVMBuildXor(ctx->builder, old[w], words[w], "");
-         value = LLVMBuildXor(ctx->builder, and(ctx, value, changed), old[w], "");
+      if (ctx->bits[w]) {
+         lp_build_tile_store(&ctx->tile,
+                             lp_build_merge_bits(&ctx->tile.bld, active,
+                                                 ctx->bits[w], words[w], old[w]),
+                             ptr, w * LP_TILE_WORD_SIZE);
       }
-      store_vec(ctx, value, ptr, w * LP_PEEL_WORD_SIZE);
    }
 }
 
@@ -37,7 +41,122 @@ static void
 load_layer(struct peel_context *ctx, LLVMValueRef ptr, LLVMValueRef *words)
 {
    for (unsigned w = 0; w < ctx->num_words; w++)
-      words[w] = load_vec(ctx, ptr, w * LP_PEEL_WORD_SIZE);
+      words[w] = lp_build_tile_load(&ctx->tile, ptr, w * LP_TILE_WORD_SIZE);
+}
+
+
+static int
+layer_size(const struct peel_context *ctx)
+{
+   return ctx->num_words * LP_TILE_WORD_SIZE;
+}
+
+
+/** What the loop has when it comes to its head from the current block. */
+static void
+add_incoming(struct peel_context *ctx, struct insert_loop *loop,
+             LLVMValueRef ptr, LLVMValueRef active, LLVMValueRef *words)
+{
+   LLVMBasicBlockRef block = LLVMGetInsertBlock(ctx->gallivm->builder);
+
+   LLVMAddIncoming(loop->ptr, &ptr, &block, 1);
+   LLVMAddIncoming(loop->active, &active, &block, 1);
+   for (unsigned w = 0; w < ctx->num_words; w++)
+      LLVMAddIncoming(loop->words[w], &words[w], &block, 1);
+}
+
+
+static void
+begin_loop(struct peel_context *ctx, struct insert_loop *loop,
+           LLVMValueRef active, LLVMValueRef *last)
+{
+   LLVMBuilderRef builder = ctx->gallivm->builder;
+   LLVMTypeRef vec_type = ctx->tile.bld.vec_type;
+   LLVMBasicBlockRef start = LLVMGetInsertBlock(builder);
+
+   loop->head = lp_build_insert_new_block(ctx->gallivm, "peel_loop");
+   LLVMPositionBuilderAtEnd(builder, loop->head);
+   loop->ptr = LLVMBuildPhi(builder, LLVMTypeOf(ctx->layers), "");
+   loop->active = LLVMBuildPhi(builder, vec_type, "");
+   for (unsigned w = 0; w < ctx->num_words; w++)
+      loop->words[w] = LLVMBuildPhi(builder, vec_type, "");
+
+   LLVMPositionBuilderAtEnd(builder, start);
+   add_incoming(ctx, loop, ctx->last_ptr, active, last);
+   LLVMBuildBr(builder, loop->head);
+   LLVMPositionBuilderAtEnd(builder, loop->head);
+}
+
+
+/**
+ * Move several layers at once, if the fragment goes before all of them in all
+ * lanes that are active; else go on at the block `one`.
+ */
+static void
+build_step(struct peel_context *ctx, struct insert_loop *loop,
+           LLVMBasicBlockRef one)
+{
+   struct gallivm_state *gallivm = ctx->gallivm;
+   LLVMBuilderRef builder = gallivm->builder;
+   LLVMBasicBlockRef try_step = lp_build_insert_new_block(gallivm, "peel_try");
+   LLVMBasicBlockRef step = lp_build_insert_new_block(gallivm, "peel_step");
+   LLVMValueRef step_end =
+      lp_build_const_offset(gallivm, ctx->layers, STEP * layer_size(ctx));
+
+   LLVMBuildCondBr(builder,
+                   LLVMBuildICmp(builder, LLVMIntUGE, loop->ptr, step_end, ""),
+                   try_step, one);
+
+   LLVMPositionBuilderAtEnd(builder, try_step);
+   LLVMValueRef foremost = lp_build_tile_load(&ctx->tile, loop->ptr,
+                                              -STEP * layer_size(ctx));
+   LLVMValueRef stops =
+      lp_build_andnot(&ctx->tile.bld, loop->active,
+                      is_nearer(ctx, ctx->fragment[0], foremost));
+   LLVMBuildCondBr(builder, any_lane(ctx, stops), one, step);
+
+   LLVMPositionBuilderAtEnd(builder, step);
+   LLVMValueRef ptr = loop->ptr;
+   LLVMValueRef words[MAX_WORDS], front[MAX_WORDS];
+   memcpy(words, loop->words, sizeof words);
+   for (unsigned i = 0; i < STEP; i++) {
+      LLVMValueRef front_ptr =
+         lp_build_const_offset(gallivm, ptr, -layer_size(ctx));
+
+      load_layer(ctx, front_ptr, front);
+      store_layer(ctx, ptr, loop->active, front, words);
+      memcpy(words, front, sizeof words);
+      ptr = front_ptr;
+   }
+   add_incoming(ctx, loop, ptr, loop->active, words);
+   LLVMBuildBr(builder, loop->head);
+}
+
+
+/**
+ * Move one layer in the lanes where the fragment goes before it; in the other
+ * active ones this is the fragment's place.
+ */
+static void
+build_move(struct peel_context *ctx, struct insert_loop *loop,
+           LLVMBasicBlockRef end)
+{
+   LLVMBuilderRef builder = ctx->gallivm->builder;
+   LLVMValueRef words[MAX_WORDS], front[MAX_WORDS];
+   LLVMValueRef front_ptr =
+      lp_build_const_offset(ctx->gallivm, loop->ptr, -layer_size(ctx));
+
+   load_layer(ctx, front_ptr, front);
+   LLVMValueRef moved =
+      lp_build_and(&ctx->tile.bld, loop->active,
+                   is_nearer(ctx, ctx->fragment[0], front[0]));
+   for (unsigned w = 0; w < ctx->num_words; w++) {
+      words[w] = lp_build_merge_bits(&ctx->tile.bld, moved, ~0u, front[w],
+                                     ctx->fragment[w]);
+   }
+   store_layer(ctx, loop->ptr, loop->active, words, loop->words);
+   add_incoming(ctx, loop, front_ptr, moved, front);
+   LLVMBuildCondBr(builder, any_lane(ctx, moved), loop->head, end);
 }
 
 
@@ -49,86 +168,31 @@ load_layer(struct peel_context *ctx, LLVMValueRef ptr, LLVMValueRef *words)
  * once can be compared by the foremost of them, and moved in all active lanes.
  */
 void
-lp_build_peel_insert(struct peel_context *ctx, LLVMValueRef first_active,
+lp_build_peel_insert(struct peel_context *ctx, LLVMValueRef active,
                      LLVMValueRef *last)
 {
-   enum { STEP = 4 };
    struct gallivm_state *gallivm = ctx->gallivm;
-   LLVMBuilderRef builder = ctx->builder;
-   const int layer_size = ctx->num_words * LP_PEEL_WORD_SIZE;
-   LLVMTypeRef ptr_type = LLVMTypeOf(ctx->layers);
-   LLVMValueRef old[MAX_WORDS], front[MAX_WORDS], words[MAX_WORDS];
+   LLVMBuilderRef builder = gallivm->builder;
+   struct insert_loop loop;
 
-   LLVMBasicBlockRef start = LLVMGetInsertBlock(builder);
-   LLVMBasicBlockRef loop = lp_build_insert_new_block(gallivm, "peel_loop");
-   LLVMBasicBlockRef try_step = lp_build_insert_new_block(gallivm, "peel_try");
-   LLVMBasicBlockRef step = lp_build_insert_new_block(gallivm, "peel_step");
+   begin_loop(ctx, &loop, active, last);
    LLVMBasicBlockRef one = lp_build_insert_new_block(gallivm, "peel_one");
    LLVMBasicBlockRef move = lp_build_insert_new_block(gallivm, "peel_move");
    LLVMBasicBlockRef first = lp_build_insert_new_block(gallivm, "peel_first");
    LLVMBasicBlockRef end = lp_build_insert_new_block(gallivm, "peel_end");
-   LLVMValueRef step_end = const_offset(ctx, ctx->layers, STEP * layer_size);
 
-   LLVMBuildBr(builder, loop);
-
-   LLVMPositionBuilderAtEnd(builder, loop);
-   LLVMValueRef ptr = LLVMBuildPhi(builder, ptr_type, "");
-   LLVMValueRef active = LLVMBuildPhi(builder, ctx->vec_type, "");
-   LLVMAddIncoming(ptr, &ctx->last_ptr, &start, 1);
-   LLVMAddIncoming(active, &first_active, &start, 1);
-   for (unsigned w = 0; w < ctx->num_words; w++) {
-      old[w] = LLVMBuildPhi(builder, ctx->vec_type, "");
-      LLVMAddIncoming(old[w], &last[w], &start, 1);
-   }
-   LLVMBuildCondBr(builder,
-                   LLVMBuildICmp(builder, LLVMIntUGE, ptr, step_end, ""),
-                   try_step, one);
-
-   LLVMPositionBuilderAtEnd(builder, try_step);
-   LLVMValueRef foremost =
-      load_vec(ctx, const_offset(ctx, ptr, -STEP * layer_size), 0);
-   LLVMValueRef stops =
-      and_not(ctx, active, passes(ctx, ctx->fragment[0], foremost));
-   LLVMBuildCondBr(builder, any(ctx, stops), one, step);
-
-   LLVMPositionBuilderAtEnd(builder, step);
-   memcpy(words, old, sizeof words);
-   LLVMValueRef step_ptr = ptr;
-   for (unsigned i = 0; i < STEP; i++) {
-      LLVMValueRef front_ptr = const_offset(ctx, step_ptr, -layer_size);
-
-      load_layer(ctx, front_ptr, front);
-      store_layer(ctx, step_ptr, active, front, words);
-      memcpy(words, front, sizeof words);
-      step_ptr = front_ptr;
-   }
-   LLVMAddIncoming(ptr, &step_ptr, &step, 1);
-   LLVMAddIncoming(active, &active, &step, 1);
-   for (unsigned w = 0; w < ctx->num_words; w++)
-      LLVMAddIncoming(old[w], &words[w], &step, 1);
-   LLVMBuildBr(builder, loop);
+   build_step(ctx, &loop, one);
 
    LLVMPositionBuilderAtEnd(builder, one);
    LLVMBuildCondBr(builder,
-                   LLVMBuildICmp(builder, LLVMIntEQ, ptr, ctx->layers, ""),
+                   LLVMBuildICmp(builder, LLVMIntEQ, loop.ptr, ctx->layers, ""),
                    first, move);
 
    LLVMPositionBuilderAtEnd(builder, move);
-   LLVMValueRef front_ptr = const_offset(ctx, ptr, -layer_size);
-   load_layer(ctx, front_ptr, front);
-   LLVMValueRef moved =
-      and(ctx, active, passes(ctx, ctx->fragment[0], front[0]));
-   for (unsigned w = 0; w < ctx->num_words; w++)
-      words[w] = select_lanes(ctx, moved, front[w], ctx->fragment[w]);
-   store_layer(ctx, ptr, active, words, old);
-   LLVMAddIncoming(ptr, &front_ptr, &move, 1);
-   LLVMAddIncoming(active, &moved, &move, 1);
-   for (unsigned w = 0; w < ctx->num_words; w++)
-      LLVMAddIncoming(old[w], &front[w], &move, 1);
-   LLVMBuildCondBr(builder, any(ctx, moved), loop, end);
+   build_move(ctx, &loop, end);
 
    LLVMPositionBuilderAtEnd(builder, first);
-   store_layer(ctx, ptr, active, ctx->fragment, old);
+   store_layer(ctx, loop.ptr, loop.active, ctx->fragment, loop.words);
    LLVMBuildBr(builder, end);
 
    LLVMPositionBuilderAtEnd(builder, end);

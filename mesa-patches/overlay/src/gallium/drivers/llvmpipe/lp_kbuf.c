@@ -18,13 +18,13 @@
 #include "lp_context.h"
 #include "lp_flush.h"
 #include "lp_jit.h"
-#include "lp_kbuf_tile.h"
 #include "lp_scene.h"
 #include "lp_screen.h"
 #include "lp_setup_context.h"
 #include "lp_state.h"
 #include "lp_state_fs.h"
 #include "lp_texture.h"
+#include "lp_tile_store.h"
 
 
 /* Off: always work on the color buffers themselves. */
@@ -84,16 +84,24 @@ gather_program_info(struct lp_kbuf_program *program)
 }
 
 
-/** Now, where a lack of memory can still be told; draws rely on them. */
+/**
+ * Have the memory that draws with a program need, whatever the framebuffer:
+ * now, where a lack of it can still be told.
+ */
 static bool
-create_tiles(struct pipe_context *pipe)
+reserve_stores(struct pipe_context *pipe, const struct lp_kbuf_program *program)
 {
    struct llvmpipe_screen *screen = llvmpipe_screen(pipe->screen);
 
+   /* The last layer may have more color buffers than the program names. */
+   const size_t block_size =
+      (program->num_entries + PIPE_MAX_COLOR_BUFS - 1) *
+      LP_TILE_COLOR_WORDS * LP_TILE_WORD_SIZE;
+
    mtx_lock(&screen->rast_mutex);
-   const bool created = lp_kbuf_tiles_create(screen->rast);
+   const bool reserved = lp_tile_stores_reserve(screen->rast, block_size, 1);
    mtx_unlock(&screen->rast_mutex);
-   return created;
+   return reserved;
 }
 
 
@@ -105,9 +113,8 @@ llvmpipe_create_kbuffer_state(struct pipe_context *pipe,
    struct blob blob;
 
    assert(templ->type == PIPE_SHADER_IR_NIR);
-   if (!program || !create_tiles(pipe)) {
+   if (!program) {
       ralloc_free(templ->ir.nir);
-      FREE(program);
       return NULL;
    }
    pipe_reference_init(&program->reference, 1);
@@ -116,11 +123,11 @@ llvmpipe_create_kbuffer_state(struct pipe_context *pipe,
 
    blob_init(&blob);
    nir_serialize(&blob, program->nir, true);
-   const bool complete = !blob.out_of_memory;
+   const bool complete = !blob.out_of_memory && reserve_stores(pipe, program);
    _mesa_sha1_compute(blob.data, blob.size, program->sha1);
    blob_finish(&blob);
 
-   /* The hash of a part would be that of other programs, too. */
+   /* The hash of an incomplete blob would be that of other programs, too. */
    if (!complete)
       program_reference(&program, NULL);
 
@@ -179,7 +186,7 @@ llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
          program_reference(&kbuf->program, NULL);
    }
 
-   lp->dirty |= LP_NEW_KBUFFER;
+   lp->dirty |= LP_NEW_BLEND;
    return !state || kbuf->program == state->program;
 }
 
@@ -187,9 +194,9 @@ llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
 void
 lp_kbuf_init(struct llvmpipe_context *lp)
 {
-   lp->pipe.create_kbuffer_state = llvmpipe_create_kbuffer_state;
-   lp->pipe.delete_kbuffer_state = llvmpipe_delete_kbuffer_state;
-   lp->pipe.set_kbuffer_state = llvmpipe_set_kbuffer_state;
+   lp->pipe.kbuffer.create_program = llvmpipe_create_kbuffer_state;
+   lp->pipe.kbuffer.delete_program = llvmpipe_delete_kbuffer_state;
+   lp->pipe.kbuffer.set_state = llvmpipe_set_kbuffer_state;
 }
 
 
@@ -247,9 +254,9 @@ num_entries(const struct llvmpipe_context *lp)
 
 
 /**
- * Whether to work on the thread's copy of the tile.  Sample planes, 1D
- * resources, and fragment shaders that read the color buffers are left to the
- * way that works on the color buffers themselves.
+ * Whether to work in the tile store.  Sample planes, 1D resources, and fragment
+ * shaders that read the color buffers are left to the way that works on the
+ * color buffers themselves.
  */
 static bool
 use_tile(const struct llvmpipe_context *lp)
@@ -288,6 +295,7 @@ lp_kbuf_make_key(const struct llvmpipe_context *lp,
       key->blend.rt[i].colormask = i < key->nr_cbufs ? colormask : 0;
    }
 
+   lp->setup->dirty |= LP_SETUP_NEW_KBUFFER;
    if (!program)
       return;
 
@@ -319,6 +327,30 @@ fill_resources(const struct lp_kbuf_state *kbuf,
          lp_jit_texture_from_pipe(&res->textures[i], kbuf->sampler_views[i]);
       lp_jit_sampler_from_pipe(&res->samplers[i], &kbuf->samplers[i]);
    }
+}
+
+
+/**
+ * Have the scene keep the textures that fill_resources() has mapped; false if
+ * it is full.
+ */
+static bool
+reference_textures(const struct lp_kbuf_state *kbuf, struct lp_scene *scene,
+                   bool new_scene)
+{
+   bool referenced = true;
+
+   for (unsigned i = 0; i < kbuf->num_sampler_views; i++) {
+      if (kbuf->sampler_views[i]) {
+         struct pipe_resource *texture = kbuf->sampler_views[i]->texture;
+
+         /* The reference keeps a display target mapped, not the resources. */
+         referenced &= lp_scene_add_resource_reference(scene, texture,
+                                                       new_scene, false);
+         llvmpipe_resource_unmap(texture, 0, 0);
+      }
+   }
+   return referenced;
 }
 
 
@@ -360,35 +392,17 @@ lp_kbuf_update_scene(struct lp_setup_context *setup, bool new_scene)
       }
    }
 
-   struct lp_kbuf_layout layout;
-   enum pipe_format formats[PIPE_MAX_COLOR_BUFS];
-   for (unsigned i = 0; i < setup->fb.nr_cbufs; i++) {
-      formats[i] = setup->fb.cbufs[i] ? setup->fb.cbufs[i]->format :
-                                        PIPE_FORMAT_NONE;
-   }
-   stored->num_entries = num_entries(lp);
-   stored->num_color_buffers = kbuf->num_color_buffers;
    stored->written = kbuf->program->written;
-   lp_kbuf_layout_init(&layout, stored->num_entries, kbuf->num_color_buffers,
-                       formats, setup->fb.nr_cbufs);
-   stored->block_size = layout.size * LP_KBUF_WORD_SIZE;
+   lp_tile_layout_init_fb(&stored->layout, false, 1,
+                          lp_kbuf_num_layers(num_entries(lp),
+                                             kbuf->num_color_buffers),
+                          kbuf->num_color_buffers, &setup->fb);
 
-   /* The reference keeps a display target mapped, not the resources. */
-   bool referenced = true;
    fill_resources(kbuf, constants, &stored->resources);
-   for (unsigned i = 0; i < kbuf->num_sampler_views; i++) {
-      if (kbuf->sampler_views[i]) {
-         struct pipe_resource *texture = kbuf->sampler_views[i]->texture;
-
-         referenced &= lp_scene_add_resource_reference(scene, texture,
-                                                       new_scene, false);
-         llvmpipe_resource_unmap(texture, 0, 0);
-      }
-   }
-   if (!referenced)
+   if (!reference_textures(kbuf, scene, new_scene))
       return false;
 
-   scene->runs_kbuf = true;
+   scene->uses_tile_store = true;
    setup->fs.current.kbuf = stored;
    return true;
 }

@@ -20,9 +20,11 @@
 
 #include "pipe/p_kbuffer.h"
 #include "util/u_inlines.h"
+#include "util/u_math.h"
 #include "gallivm/lp_bld_jit_types.h"
 
 #include "lp_peel.h"
+#include "lp_tile_layout.h"
 
 struct llvmpipe_context;
 struct lp_fragment_shader_variant_key;
@@ -63,7 +65,7 @@ struct lp_kbuf_key
 {
    uint8_t num_colors;  /**< fragment colors to keep for the program */
    uint8_t num_entries; /**< entries that exist, of those named */
-   bool tiled;          /**< works on the thread's copy, see lp_kbuf_tile.h */
+   bool tiled;          /**< works in the tile store, see lp_tile_store.h */
    uint8_t sha1[20];    /**< program, layout, sampler and texture state */
    struct lp_peel_key peel;
 };
@@ -81,17 +83,15 @@ struct lp_jit_kbuf_resources
    struct lp_jit_image images[1];
 };
 
-/** Lies in the scene; the generated code finds it by its thread data. */
+/** Lies in the scene; the generated code finds it by the tile store. */
 struct lp_jit_kbuf
 {
    uint64_t layer_stride[PIPE_MAX_COLOR_BUFS];
    struct lp_jit_kbuf_resources resources;
 
-   /* For lp_kbuf_tile.c only. */
-   unsigned num_entries;
-   unsigned num_color_buffers;
-   unsigned block_size; /**< bytes of a block of the tile */
-   uint64_t written;
+   /* For the tile store only. */
+   struct lp_tile_layout layout;
+   uint64_t written;    /**< entries that are stored to */
 };
 
 void
@@ -100,7 +100,7 @@ lp_kbuf_init(struct llvmpipe_context *lp);
 void
 lp_kbuf_destroy(struct llvmpipe_context *lp);
 
-/** As pipe_context::set_kbuffer_state, without the memory for depth peeling. */
+/** As pipe_kbuffer_funcs::set_state, without the memory for depth peeling. */
 bool
 llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
                            const struct pipe_kbuffer_state *state);
@@ -109,6 +109,13 @@ llvmpipe_set_kbuffer_state(struct pipe_context *pipe,
 void
 lp_kbuf_make_key(const struct llvmpipe_context *lp,
                  struct lp_fragment_shader_variant_key *key);
+
+/** Layers of a pixel that hold its entries. */
+static inline unsigned
+lp_kbuf_num_layers(unsigned num_entries, unsigned num_color_buffers)
+{
+   return num_entries ? DIV_ROUND_UP(num_entries, num_color_buffers) : 0;
+}
 
 void
 lp_kbuf_static_samplers(const struct lp_kbuf_state *kbuf,

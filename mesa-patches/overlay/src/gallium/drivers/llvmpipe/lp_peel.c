@@ -11,18 +11,17 @@
 #include "util/u_debug.h"
 #include "util/u_framebuffer.h"
 #include "util/u_memory.h"
-#include "util/u_pack_color.h"
 
 #include "lp_context.h"
 #include "lp_flush.h"
 #include "lp_kbuf.h"
-#include "lp_peel_tile.h"
 #include "lp_scene.h"
 #include "lp_screen.h"
 #include "lp_setup_context.h"
 #include "lp_state.h"
 #include "lp_state_fs.h"
 #include "lp_texture.h"
+#include "lp_tile_store.h"
 
 
 /** From this size on layers go to memory past the caches. */
@@ -40,51 +39,10 @@ is_reversed(enum pipe_compare_func func)
 }
 
 
-void
-lp_peel_depth_format_init(struct lp_peel_depth_format *depth,
-                          enum pipe_format format, bool reversed)
+static unsigned
+num_layers(const struct pipe_surface *surf)
 {
-   const struct util_format_description *desc =
-      util_format_description(format);
-   const struct util_format_channel_description *chan =
-      &desc->channel[desc->swizzle[0]];
-
-   assert(util_format_has_depth(desc));
-   memset(depth, 0, sizeof *depth);
-   depth->floating = chan->type == UTIL_FORMAT_TYPE_FLOAT;
-   depth->reversed = reversed;
-   depth->has_stencil = util_format_has_stencil(desc);
-   depth->bytes = desc->block.bits / 8;
-   depth->width = chan->size;
-   depth->shift = chan->shift;
-   assert(depth->width + depth->shift <= 32);
-
-   /* Integers in two's complement sort as they are, floats by their sign. */
-   if (depth->floating)
-      depth->flip = 0x7fffffff;
-   else if (depth->width == 32)
-      depth->invert = 0x80000000;
-   if (reversed)
-      depth->invert ^= 0xffffffff;
-}
-
-
-unsigned
-lp_peel_color_words(enum pipe_format format)
-{
-   return format == PIPE_FORMAT_NONE ? 0 :
-      DIV_ROUND_UP(util_format_get_blocksizebits(format), 32);
-}
-
-
-static int32_t
-compare_depth(const struct lp_peel_depth_format *format,
-              enum pipe_format pipe_format, double depth)
-{
-   uint64_t value = util_pack64_z_stencil(pipe_format, depth, 0);
-
-   return lp_peel_compare_bits(format, (value >> format->shift) &
-                                       lp_peel_depth_mask(format));
+   return surf->u.tex.last_layer - surf->u.tex.first_layer + 1;
 }
 
 
@@ -115,6 +73,7 @@ llvmpipe_delete_peel_object(struct pipe_context *pipe, void *state)
 struct depth_layers
 {
    const uint8_t *map;
+   unsigned width, height;
    size_t stride, layer_stride, sample_stride;
    unsigned num_layers;
    struct lp_peel_depth_format format;
@@ -182,6 +141,60 @@ advance_sample(const struct depth_layers *layers, int32_t empty,
 }
 
 
+/** Bounds of an object, for all samples of a depth buffer. */
+struct new_bounds
+{
+   unsigned num_samples, blocks_x, blocks_y;
+   struct lp_peel_bound *bounds;
+};
+
+
+static bool
+allocate_bounds(struct new_bounds *bounds, const struct pipe_surface *zsbuf)
+{
+   bounds->num_samples = util_res_sample_count(zsbuf->texture);
+   bounds->blocks_x = DIV_ROUND_UP(zsbuf->width, 4);
+   bounds->blocks_y = DIV_ROUND_UP(zsbuf->height, 4);
+
+   const size_t size = (size_t)bounds->blocks_x * bounds->blocks_y *
+                       bounds->num_samples * sizeof(struct lp_peel_bound);
+   bounds->bounds = align_malloc(size, 64);
+   if (bounds->bounds)
+      memset(bounds->bounds, 0, size);
+   return bounds->bounds != NULL;
+}
+
+
+/**
+ * Bound all samples by what their layers hold now.
+ *
+ * \param old  what bounded this pass, or NULL
+ * \return whether any sample could take a fragment behind its new bound
+ */
+static bool
+advance_samples(const struct depth_layers *layers, int32_t empty,
+                const struct lp_peel_bound *old,
+                const struct new_bounds *bounds)
+{
+   bool more = false;
+
+   for (unsigned y = 0; y < layers->height; y++) {
+      for (unsigned x = 0; x < layers->width; x++) {
+         const unsigned i = (y & 2) * 4 + (x & 2) * 2 + (y & 1) * 2 + (x & 1);
+         const size_t block = (size_t)(y / 4) * bounds->blocks_x + x / 4;
+
+         for (unsigned s = 0; s < bounds->num_samples; s++) {
+            const size_t b = block * bounds->num_samples + s;
+
+            more |= advance_sample(layers, empty, x, y, s, i,
+                                   old ? &old[b] : NULL, &bounds->bounds[b]);
+         }
+      }
+   }
+   return more;
+}
+
+
 static bool
 llvmpipe_advance_peel_object(struct pipe_context *pipe, void *state,
                              struct pipe_surface *zsbuf,
@@ -190,71 +203,48 @@ llvmpipe_advance_peel_object(struct pipe_context *pipe, void *state,
 {
    struct llvmpipe_context *lp = llvmpipe_context(pipe);
    struct lp_peel_object *object = state;
+   struct new_bounds bounds;
 
    llvmpipe_finish(pipe, "peel object");
-   lp->dirty |= LP_NEW_KBUFFER;
+   lp->dirty |= LP_NEW_BLEND;
 
    if (!zsbuf) {
       align_free(object->bounds);
       memset(object, 0, sizeof *object);
       return true;
    }
-
-   const unsigned width = zsbuf->width;
-   const unsigned height = zsbuf->height;
-   const unsigned blocks_x = DIV_ROUND_UP(width, 4);
-   const unsigned blocks_y = DIV_ROUND_UP(height, 4);
-   const unsigned num_samples = util_res_sample_count(zsbuf->texture);
-   const size_t size = (size_t)blocks_x * blocks_y * num_samples *
-                       sizeof(struct lp_peel_bound);
-   struct lp_peel_bound *bounds = align_malloc(size, 64);
-
-   if (!bounds)
+   if (!allocate_bounds(&bounds, zsbuf))
       return false;
-   memset(bounds, 0, size);
 
    const unsigned level = zsbuf->u.tex.level;
    struct depth_layers layers = {
       .map = llvmpipe_resource_map(zsbuf->texture, level,
                                    zsbuf->u.tex.first_layer,
                                    LP_TEX_USAGE_READ),
+      .width = zsbuf->width,
+      .height = zsbuf->height,
       .stride = llvmpipe_resource_stride(zsbuf->texture, level),
       .layer_stride = llvmpipe_layer_stride(zsbuf->texture, level),
       .sample_stride = llvmpipe_sample_stride(zsbuf->texture),
-      .num_layers = zsbuf->u.tex.last_layer - zsbuf->u.tex.first_layer + 1,
+      .num_layers = num_layers(zsbuf),
    };
    lp_peel_depth_format_init(&layers.format, zsbuf->format, is_reversed(func));
-   const int32_t empty = compare_depth(&layers.format, zsbuf->format,
-                                       empty_depth);
-
-   const struct lp_peel_bound *old = object->bounds;
-   if (object->num_samples != num_samples || object->blocks_x != blocks_x ||
-       object->blocks_y != blocks_y)
-      old = NULL;
-
-   bool exhausted = true;
-   for (unsigned y = 0; y < height; y++) {
-      for (unsigned x = 0; x < width; x++) {
-         const unsigned i = (y & 2) * 4 + (x & 2) * 2 + (y & 1) * 2 + (x & 1);
-
-         for (unsigned s = 0; s < num_samples; s++) {
-            const size_t b =
-               ((size_t)(y / 4) * blocks_x + x / 4) * num_samples + s;
-
-            if (advance_sample(&layers, empty, x, y, s, i,
-                               old ? &old[b] : NULL, &bounds[b]))
-               exhausted = false;
-         }
-      }
-   }
+   const int32_t empty = lp_peel_compare_depth(&layers.format, zsbuf->format,
+                                               empty_depth);
+   const bool same_size = object->num_samples == bounds.num_samples &&
+                          object->blocks_x == bounds.blocks_x &&
+                          object->blocks_y == bounds.blocks_y;
+   const bool more =
+      advance_samples(&layers, empty, same_size ? object->bounds : NULL,
+                      &bounds);
    llvmpipe_resource_unmap(zsbuf->texture, level, zsbuf->u.tex.first_layer);
 
    align_free(object->bounds);
-   object->num_samples = num_samples;
-   object->blocks_x = blocks_x;
-   object->blocks_y = blocks_y;
-   object->bounds = bounds;
-   object->exhausted = exhausted;
+   object->num_samples = bounds.num_samples;
+   object->blocks_x = bounds.blocks_x;
+   object->blocks_y = bounds.blocks_y;
+   object->bounds = bounds.bounds;
+   object->exhausted = !more;
    object->overflow = 0;
    return true;
 }
@@ -344,46 +334,42 @@ lp_peel_make_key(const struct llvmpipe_context *lp,
 }
 
 
-/** The sizes of what is peeled into. */
 static void
-init_layout(struct lp_rast_peel *peel, const struct pipe_framebuffer_state *fb)
+init_layout(struct lp_tile_layout *layout,
+            const struct pipe_framebuffer_state *fb)
 {
-   peel->num_layers =
-      fb->zsbuf->u.tex.last_layer - fb->zsbuf->u.tex.first_layer + 1;
-   peel->num_samples = util_res_sample_count(fb->zsbuf->texture);
-   peel->num_words = 1;
-   for (unsigned i = 0; i < fb->nr_cbufs; i++) {
-      if (fb->cbufs[i])
-         peel->num_words += lp_peel_color_words(fb->cbufs[i]->format);
-   }
+   lp_tile_layout_init_fb(layout, true, util_res_sample_count(fb->zsbuf->texture),
+                          num_layers(fb->zsbuf), fb->nr_cbufs, fb);
 }
 
 
 /** Have the memory that draws need with a state; false if there is none. */
 static bool
-reserve_tiles(const struct llvmpipe_context *lp,
-              const struct pipe_kbuffer_state *state)
+reserve_stores(const struct llvmpipe_context *lp,
+               const struct pipe_kbuffer_state *state)
 {
    struct llvmpipe_screen *screen = llvmpipe_screen(lp->pipe.screen);
-   struct lp_rast_peel peel;
+   struct lp_tile_layout layout;
 
    if (!state || !state->peel.object || !has_depth(&lp->framebuffer))
       return true;
 
-   init_layout(&peel, &lp->framebuffer);
+   init_layout(&layout, &lp->framebuffer);
    mtx_lock(&screen->rast_mutex);
-   const bool reserved = lp_peel_tiles_reserve(screen->rast, &peel);
+   const bool reserved =
+      lp_tile_stores_reserve(screen->rast, lp_tile_block_size(&layout),
+                             layout.num_samples);
    mtx_unlock(&screen->rast_mutex);
    return reserved;
 }
 
 
-/** A state without its tiles is not set: draws would rely on them. */
+/** A state without its memory is not set: draws would rely on it. */
 static bool
 llvmpipe_set_peel_state(struct pipe_context *pipe,
                         const struct pipe_kbuffer_state *state)
 {
-   const bool reserved = reserve_tiles(llvmpipe_context(pipe), state);
+   const bool reserved = reserve_stores(llvmpipe_context(pipe), state);
 
    return llvmpipe_set_kbuffer_state(pipe, reserved ? state : NULL) && reserved;
 }
@@ -392,11 +378,11 @@ llvmpipe_set_peel_state(struct pipe_context *pipe,
 void
 lp_peel_init(struct llvmpipe_context *lp)
 {
-   lp->pipe.create_peel_object = llvmpipe_create_peel_object;
-   lp->pipe.delete_peel_object = llvmpipe_delete_peel_object;
-   lp->pipe.advance_peel_object = llvmpipe_advance_peel_object;
-   lp->pipe.get_peel_overflow = llvmpipe_get_peel_overflow;
-   lp->pipe.set_kbuffer_state = llvmpipe_set_peel_state;
+   lp->pipe.kbuffer.create_peel_object = llvmpipe_create_peel_object;
+   lp->pipe.kbuffer.delete_peel_object = llvmpipe_delete_peel_object;
+   lp->pipe.kbuffer.advance_peel_object = llvmpipe_advance_peel_object;
+   lp->pipe.kbuffer.get_peel_overflow = llvmpipe_get_peel_overflow;
+   lp->pipe.kbuffer.set_state = llvmpipe_set_peel_state;
 }
 
 
@@ -428,16 +414,16 @@ lp_peel_update_scene(struct lp_setup_context *setup)
    lp_peel_depth_format_init(&stored->depth, fb->zsbuf->format,
                              is_reversed(peel->func));
    stored->bounded = object->bounds != NULL;
-   stored->empty = compare_depth(&stored->depth, fb->zsbuf->format,
-                                 peel->empty_depth);
-   init_layout(stored, fb);
+   stored->empty = lp_peel_compare_depth(&stored->depth, fb->zsbuf->format,
+                                         peel->empty_depth);
+   init_layout(&stored->layout, fb);
 
-   const uint64_t size =
-      (uint64_t)fb->width * fb->height * stored->num_samples *
-      stored->num_layers * stored->num_words * 4;
+   const uint64_t size = (uint64_t)fb->width * fb->height / 16 *
+                         lp_tile_block_size(&stored->layout);
    stored->stream = size > STREAM_SIZE;
 
    setup->fs.current.peel = stored;
    setup->scene->peels = true;
+   setup->scene->uses_tile_store = true;
    return true;
 }

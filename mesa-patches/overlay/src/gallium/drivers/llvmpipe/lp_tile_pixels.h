@@ -5,7 +5,7 @@
 
 /**
  * \file lp_tile_pixels.h
- * Blocks of 4x4 pixels from memory to vectors of 32-bit words (lp_peel_tile.h)
+ * Blocks of 4x4 pixels from memory to vectors of 32-bit words (lp_tile_store.h)
  * and back.
  */
 

@@ -340,9 +340,9 @@ softpipe_set_kbuffer_state(struct pipe_context *pipe,
 void
 sp_init_kbuffer(struct softpipe_context *sp)
 {
-   sp->pipe.create_kbuffer_state = softpipe_create_kbuffer_state;
-   sp->pipe.delete_kbuffer_state = softpipe_delete_kbuffer_state;
-   sp->pipe.set_kbuffer_state = softpipe_set_kbuffer_state;
+   sp->pipe.kbuffer.create_program = softpipe_create_kbuffer_state;
+   sp->pipe.kbuffer.delete_program = softpipe_delete_kbuffer_state;
+   sp->pipe.kbuffer.set_state = softpipe_set_kbuffer_state;
 }
 
 void

@@ -56,7 +56,7 @@ struct sp_kbuffer_program
    struct sp_kbuffer_reg writes[SP_MAX_KBUFFER_ENTRIES];
 };
 
-/** What pipe_context::set_kbuffer_state has bound. */
+/** What pipe_kbuffer_funcs::set_state has bound. */
 struct sp_kbuffer
 {
    struct sp_kbuffer_program *program;

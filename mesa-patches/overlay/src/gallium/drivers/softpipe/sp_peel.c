@@ -224,8 +224,8 @@ softpipe_get_peel_overflow(struct pipe_context *pipe, void *object)
 void
 sp_init_peel(struct softpipe_context *sp)
 {
-   sp->pipe.create_peel_object = softpipe_create_peel_object;
-   sp->pipe.delete_peel_object = softpipe_delete_peel_object;
-   sp->pipe.advance_peel_object = softpipe_advance_peel_object;
-   sp->pipe.get_peel_overflow = softpipe_get_peel_overflow;
+   sp->pipe.kbuffer.create_peel_object = softpipe_create_peel_object;
+   sp->pipe.kbuffer.delete_peel_object = softpipe_delete_peel_object;
+   sp->pipe.kbuffer.advance_peel_object = softpipe_advance_peel_object;
+   sp->pipe.kbuffer.get_peel_overflow = softpipe_get_peel_overflow;
 }

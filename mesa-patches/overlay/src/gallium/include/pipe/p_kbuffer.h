@@ -28,7 +28,7 @@
  * of a fragment that the program discards.  Uniforms are UBO 0, textures and
  * samplers are numbered as in pipe_kbuffer_state.
  *
- * create_kbuffer_state takes the NIR over, also when it fails.  Any context of
+ * create_program takes the NIR over, also when it fails.  Any context of
  * the screen may set and delete the program; it stays until no context has it
  * set.
  *
@@ -78,7 +78,10 @@
 
 #include "pipe/p_state.h"
 
+struct pipe_context;
 struct pipe_sampler_view;
+struct pipe_shader_state;
+struct pipe_surface;
 
 enum pipe_kbuffer_mode
 {
@@ -90,8 +93,8 @@ enum pipe_kbuffer_mode
 struct pipe_peel_state
 {
    /**
-    * From pipe_context::create_peel_object; belongs to the context, and is
-    * not deleted while it is set.  It is not set when there was no memory for
+    * From pipe_kbuffer_funcs::create_peel_object; belongs to the context, and
+    * is not deleted while it is set.  It is not set when there was no memory for
     * the state.
     */
    void *object;
@@ -103,7 +106,7 @@ struct pipe_peel_state
 
 struct pipe_kbuffer_state
 {
-   /** From pipe_context::create_kbuffer_state; NULL: no program. */
+   /** From pipe_kbuffer_funcs::create_program; NULL: no program. */
    void *program;
 
    /** A: color draw buffers of the framebuffer, missing ones included. */
@@ -125,6 +128,42 @@ struct pipe_kbuffer_state
 
    /** For PIPE_KBUFFER_PEEL only; what is above is then 0. */
    struct pipe_peel_state peel;
+};
+
+/**
+ * What a context can do with the stage.  All of it is NULL in drivers that have
+ * none, and in contexts that wrap those of other drivers.
+ */
+struct pipe_kbuffer_funcs
+{
+   void *(*create_program)(struct pipe_context *,
+                           const struct pipe_shader_state *);
+   void (*delete_program)(struct pipe_context *, void *);
+
+   /**
+    * \return false if there is no memory for the state; until the next one,
+    *         draws through the stage change nothing then
+    */
+   bool (*set_state)(struct pipe_context *, const struct pipe_kbuffer_state *);
+
+   /** What depth peeling keeps of a framebuffer between draws. */
+   void *(*create_peel_object)(struct pipe_context *);
+   void (*delete_peel_object)(struct pipe_context *, void *);
+
+   /**
+    * Go on behind the layers that zsbuf holds now, or start over if that is
+    * NULL; in either case clear the overflow.  The rest is as in
+    * pipe_peel_state.
+    *
+    * \return false if there is no memory; the object is then as it was
+    */
+   bool (*advance_peel_object)(struct pipe_context *, void *,
+                               struct pipe_surface *zsbuf,
+                               enum pipe_compare_func func,
+                               double empty_depth);
+
+   /** Whether the object has overflowed; waits for all draws. */
+   bool (*get_peel_overflow)(struct pipe_context *, void *);
 };
 
 #endif /* P_KBUFFER_H */
