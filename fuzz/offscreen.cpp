@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "offscreen.hpp"
+#include "fuzz/offscreen.hpp"
 
-#include "finding.hpp"
+#include "fuzz/finding.hpp"
 
 namespace kb::fuzz
 {

@@ -2,9 +2,9 @@
 //
 // Draw commands, with geometry that a few bytes stand for, and the queries about them.
 
-#include "finding.hpp"
-#include "machine.hpp"
-#include "promises.hpp"
+#include "fuzz/draws/machine.hpp"
+#include "fuzz/draws/promises.hpp"
+#include "fuzz/finding.hpp"
 
 #include <cmath>
 #include <limits>

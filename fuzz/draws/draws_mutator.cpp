@@ -2,8 +2,8 @@
 //
 // Mutations of draw sequences by whole records, and of the arguments in one.
 
-#include "machine.hpp"
-#include "random.hpp"
+#include "fuzz/draws/machine.hpp"
+#include "fuzz/random.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -9,7 +9,7 @@
 //   - a draw that is an error changes no texel and no OVERFLOW;
 //   - peeling keeps sorted layers sorted, moves none back, and never loses a fragment silently.
 
-#include "machine.hpp"
+#include "fuzz/draws/machine.hpp"
 
 #include <cstdlib>
 

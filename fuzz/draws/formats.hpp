@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "trace.hpp"
+#include "fuzz/draws/trace.hpp"
 
 #include <array>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "machine.hpp"
+#include "fuzz/draws/machine.hpp"
 
-#include "finding.hpp"
+#include "fuzz/finding.hpp"
 
 #include <algorithm>
 

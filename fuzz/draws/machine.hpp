@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "trace.hpp"
+#include "fuzz/draws/trace.hpp"
 
 #include <array>
 #include <cstdint>

@@ -3,10 +3,10 @@
 // Textures, renderbuffers and framebuffers: made, attached, changed while they are attached,
 // deleted; and the parameters of framebuffers.
 
-#include "finding.hpp"
-#include "formats.hpp"
-#include "machine.hpp"
-#include "promises.hpp"
+#include "fuzz/draws/formats.hpp"
+#include "fuzz/draws/machine.hpp"
+#include "fuzz/draws/promises.hpp"
+#include "fuzz/finding.hpp"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 //
 // Commands that move pixels: those that make fragments, clears, copies, and reads.
 
-#include "formats.hpp"
-#include "machine.hpp"
+#include "fuzz/draws/formats.hpp"
+#include "fuzz/draws/machine.hpp"
 
 namespace kb::fuzz
 {

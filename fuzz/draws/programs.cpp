@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "programs.hpp"
+#include "fuzz/draws/programs.hpp"
 
 #include <array>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-#include "promises.hpp"
+#include "fuzz/draws/promises.hpp"
 
-#include "finding.hpp"
-#include "formats.hpp"
-#include "programs.hpp"
+#include "fuzz/draws/formats.hpp"
+#include "fuzz/draws/programs.hpp"
+#include "fuzz/finding.hpp"
 
 #include <algorithm>
 #include <cstring>

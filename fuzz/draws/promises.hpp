@@ -6,7 +6,7 @@
 
 #pragma once
 
-#include "machine.hpp"
+#include "fuzz/draws/machine.hpp"
 
 #include <string>
 

@@ -2,9 +2,9 @@
 //
 // What runs for fragments: k-buffer programs and fragment stages of every kind.
 
-#include "finding.hpp"
-#include "machine.hpp"
-#include "programs.hpp"
+#include "fuzz/draws/machine.hpp"
+#include "fuzz/draws/programs.hpp"
+#include "fuzz/finding.hpp"
 
 #include <algorithm>
 

@@ -3,8 +3,8 @@
 // State: of the extensions, and all other per-fragment and rasterization state that they meet;
 // the attribute stack, display lists, and the two contexts.
 
-#include "finding.hpp"
-#include "machine.hpp"
+#include "fuzz/draws/machine.hpp"
+#include "fuzz/finding.hpp"
 
 namespace kb::fuzz
 {

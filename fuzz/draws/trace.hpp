@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "offscreen.hpp"
+#include "fuzz/offscreen.hpp"
 
 #include <fmt/format.h>
 

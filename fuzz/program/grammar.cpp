@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "grammar.hpp"
+#include "fuzz/program/grammar.hpp"
 
 #include <fmt/format.h>
 

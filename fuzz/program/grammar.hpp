@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "random.hpp"
+#include "fuzz/random.hpp"
 
 #include <string>
 

@@ -3,7 +3,7 @@
 // Mutations of program strings: of statements where that is possible, else of bytes and of words
 // of the dictionary, as libFuzzer does them.
 
-#include "grammar.hpp"
+#include "fuzz/program/grammar.hpp"
 
 #include <algorithm>
 #include <cctype>

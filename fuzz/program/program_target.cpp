@@ -9,8 +9,8 @@
 //     target, and draws without an error;
 //   - a program that has no result leaves all entries as they are, bit for bit.
 
-#include "finding.hpp"
-#include "offscreen.hpp"
+#include "fuzz/finding.hpp"
+#include "fuzz/offscreen.hpp"
 
 #include <cstdint>
 #include <cstring>

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "exact.hpp"
+#include "bench/exact.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "capture.hpp"
+#include "bench/capture.hpp"
 
-#include "exact.hpp"
+#include "bench/exact.hpp"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,9 @@
 
 #pragma once
 
-#include "camera.hpp"
-#include "gl_scene.hpp"
-#include "image.hpp"
+#include "bench/gl_scene.hpp"
+#include "lib/io/image.hpp"
+#include "lib/scene/camera.hpp"
 
 #include <cstdint>
 #include <span>

@@ -4,8 +4,8 @@
 // one that the pass before it kept. Fragments of equal depth count as one: that is the method's own
 // error.
 
-#include "layer_resolve.hpp"
-#include "renderer.hpp"
+#include "bench/layer_resolve.hpp"
+#include "bench/renderer.hpp"
 
 #include <array>
 

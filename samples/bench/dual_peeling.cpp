@@ -6,8 +6,8 @@
 // is that of all fragments once k is their number, and none of the k nearest before. Fragments of
 // equal depth are mixed up: that is the method's own error.
 
-#include "layer_resolve.hpp"
-#include "renderer.hpp"
+#include "bench/layer_resolve.hpp"
+#include "bench/renderer.hpp"
 
 #include <fmt/format.h>
 

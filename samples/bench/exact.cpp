@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "exact.hpp"
+#include "bench/exact.hpp"
 
 #include <algorithm>
 

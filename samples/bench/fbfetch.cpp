@@ -3,8 +3,8 @@
 // A k-buffer by framebuffer fetch, as stock Mesa can do it: the fragment shader reads the entries
 // of its pixel, inserts the fragment and writes them back.
 
-#include "packed_entries.hpp"
-#include "renderer.hpp"
+#include "bench/packed_entries.hpp"
+#include "bench/renderer.hpp"
 
 #include <stdexcept>
 

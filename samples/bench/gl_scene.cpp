@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "gl_scene.hpp"
+#include "bench/gl_scene.hpp"
 
 #include <glm/gtc/type_ptr.hpp>
 

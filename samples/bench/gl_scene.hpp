@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "mesh_buffers.hpp"
-#include "study_scene.hpp"
+#include "bench/study_scene.hpp"
+#include "lib/gl/mesh_buffers.hpp"
 
 #include <stdexcept>
 #include <string>

@@ -12,9 +12,9 @@
 //   so that finding the farthest anew takes one look at a block and one at the maxima: 16 loads for
 //   k = 64 instead of the max-array's 64, and none of the heap's moves.
 
-#include "renderer.hpp"
-#include "sorting_network.hpp"
-#include "storage_buffer.hpp"
+#include "bench/renderer.hpp"
+#include "bench/sorting_network.hpp"
+#include "bench/storage_buffer.hpp"
 
 #include <fmt/format.h>
 

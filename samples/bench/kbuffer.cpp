@@ -3,11 +3,11 @@
 // A k-buffer program: the fragment shader only shades, and the program that runs after it in the
 // place of blending inserts the fragment.
 
-#include "kbuffer_program.hpp"
+#include "programs/kbuffer_program.hpp"
 
-#include "context.hpp"
-#include "packed_entries.hpp"
-#include "renderer.hpp"
+#include "bench/packed_entries.hpp"
+#include "bench/renderer.hpp"
+#include "lib/gl/context.hpp"
 
 namespace kb::bench
 {

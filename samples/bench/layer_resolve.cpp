@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "layer_resolve.hpp"
+#include "bench/layer_resolve.hpp"
 
-#include "background.hpp"
+#include "bench/background.hpp"
 
 #include <fmt/format.h>
 

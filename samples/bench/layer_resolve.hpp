@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "gl_scene.hpp"
+#include "bench/gl_scene.hpp"
 
 namespace kb::bench
 {

@@ -7,9 +7,9 @@
 // The fragments that are shaded together take their nodes by one step of the counter, and a node is
 // spread over three buffers: in llvmpipe both are faster than the plain way.
 
-#include "renderer.hpp"
-#include "sorting_network.hpp"
-#include "storage_buffer.hpp"
+#include "bench/renderer.hpp"
+#include "bench/sorting_network.hpp"
+#include "bench/storage_buffer.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "machine.hpp"
+#include "bench/machine.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

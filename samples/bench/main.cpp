@@ -3,11 +3,11 @@
 // Measures transparency methods side by side: the methods of stock Mesa and those of the patched
 // one, each driver in a process of its own, taking turns frame by frame.
 
-#include "options.hpp"
-#include "report.hpp"
-#include "study.hpp"
-#include "worker.hpp"
-#include "worker_process.hpp"
+#include "bench/options.hpp"
+#include "bench/report.hpp"
+#include "bench/study.hpp"
+#include "bench/worker.hpp"
+#include "bench/worker_process.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

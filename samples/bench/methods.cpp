@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "methods.hpp"
+#include "bench/methods.hpp"
 
 #include <fmt/format.h>
 

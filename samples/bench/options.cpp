@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "options.hpp"
+#include "bench/options.hpp"
 
-#include "methods.hpp"
-#include "study_scene.hpp"
+#include "bench/methods.hpp"
+#include "bench/study_scene.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "command_line.hpp"
+#include "lib/app/command_line.hpp"
 
 #include <filesystem>
 #include <optional>

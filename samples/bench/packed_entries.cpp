@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "packed_entries.hpp"
+#include "bench/packed_entries.hpp"
 
-#include "background.hpp"
-#include "kbuffer_program.hpp"
+#include "bench/background.hpp"
+#include "programs/kbuffer_program.hpp"
 
 #include <fmt/format.h>
 

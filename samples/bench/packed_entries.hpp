@@ -5,9 +5,9 @@
 // how they get there.
 #pragma once
 
-#include "camera.hpp"
-#include "gl_scene.hpp"
-#include "kbuffer.hpp"
+#include "bench/gl_scene.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "lib/scene/camera.hpp"
 
 namespace kb::bench
 {

@@ -3,10 +3,10 @@
 // GL_MESA_depth_peeling: one pass over the geometry, in which the driver inserts each fragment by
 // its depth into k layers.
 
-#include "depth_peeling.hpp"
+#include "lib/gl/depth_peeling.hpp"
 
-#include "layer_resolve.hpp"
-#include "renderer.hpp"
+#include "bench/layer_resolve.hpp"
+#include "bench/renderer.hpp"
 
 namespace kb::bench
 {

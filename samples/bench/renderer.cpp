@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "renderer.hpp"
+#include "bench/renderer.hpp"
 
 #include <stdexcept>
 

@@ -3,8 +3,8 @@
 // One method of the study with its storage: draws whole frames on request.
 #pragma once
 
-#include "camera.hpp"
-#include "gl_scene.hpp"
+#include "bench/gl_scene.hpp"
+#include "lib/scene/camera.hpp"
 
 #include <memory>
 #include <string>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "report.hpp"
+#include "bench/report.hpp"
 
-#include "output_file.hpp"
+#include "lib/io/output_file.hpp"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "image.hpp"
-#include "timing.hpp"
+#include "lib/app/timing.hpp"
+#include "lib/io/image.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "sorting_network.hpp"
+#include "bench/sorting_network.hpp"
 
-#include "background.hpp"
+#include "bench/background.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "storage_buffer.hpp"
+#include "bench/storage_buffer.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 // Memory that fragment shaders of the rival methods write, and the order in which pixels lie there.
 #pragma once
 
-#include "camera.hpp"
-#include "gl_scene.hpp"
+#include "bench/gl_scene.hpp"
+#include "lib/scene/camera.hpp"
 
 #include <cstddef>
 #include <string>

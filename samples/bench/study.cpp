@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 
-#include "study.hpp"
+#include "bench/study.hpp"
 
-#include "exact.hpp"
-#include "gl_scene.hpp"
-#include "machine.hpp"
-#include "methods.hpp"
-#include "study_scene.hpp"
-#include "temporary_folder.hpp"
-#include "worker_process.hpp"
+#include "bench/exact.hpp"
+#include "bench/gl_scene.hpp"
+#include "bench/machine.hpp"
+#include "bench/methods.hpp"
+#include "bench/study_scene.hpp"
+#include "bench/temporary_folder.hpp"
+#include "bench/worker_process.hpp"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "options.hpp"
-#include "report.hpp"
+#include "bench/options.hpp"
+#include "bench/report.hpp"
 
 namespace kb::bench
 {

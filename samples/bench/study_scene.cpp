@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "study_scene.hpp"
+#include "bench/study_scene.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

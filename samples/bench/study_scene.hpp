@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "mesh.hpp"
+#include "lib/io/mesh.hpp"
 
 #include <glm/mat4x4.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "temporary_folder.hpp"
+#include "bench/temporary_folder.hpp"
 
 #include <cerrno>
 #include <cstdlib>

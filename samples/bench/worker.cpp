@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 
-#include "worker.hpp"
+#include "bench/worker.hpp"
 
-#include "capture.hpp"
-#include "context.hpp"
-#include "kbuffer.hpp"
-#include "renderer.hpp"
-#include "timing.hpp"
-#include "worker_process.hpp"
+#include "bench/capture.hpp"
+#include "bench/renderer.hpp"
+#include "bench/worker_process.hpp"
+#include "lib/app/timing.hpp"
+#include "lib/gl/context.hpp"
+#include "lib/gl/kbuffer.hpp"
 
 #include <optional>
 

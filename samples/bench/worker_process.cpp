@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "worker_process.hpp"
+#include "bench/worker_process.hpp"
 
 #include <array>
 #include <cerrno>

@@ -2,8 +2,8 @@
 //
 // The base of the ratios: the nearest surface, opaque.
 
-#include "background.hpp"
-#include "renderer.hpp"
+#include "bench/background.hpp"
+#include "bench/renderer.hpp"
 
 namespace kb::bench
 {

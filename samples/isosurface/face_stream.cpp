@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "fragment_stream.hpp"
+#include "isosurface/fragment_stream.hpp"
 
-#include "disorder_capture.hpp"
-#include "face_program.hpp"
+#include "volume/disorder_capture.hpp"
+#include "volume/face_program.hpp"
 
 namespace kb
 {

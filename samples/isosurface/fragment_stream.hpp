@@ -5,12 +5,12 @@
 
 #pragma once
 
-#include "camera.hpp"
-#include "disorder.hpp"
-#include "gl_objects.hpp"
-#include "iso_program.hpp"
-#include "long_work.hpp"
-#include "sorted_faces.hpp"
+#include "isosurface/iso_program.hpp"
+#include "lib/app/long_work.hpp"
+#include "lib/gl/gl_objects.hpp"
+#include "lib/scene/camera.hpp"
+#include "volume/disorder.hpp"
+#include "volume/sorted_faces.hpp"
 
 #include <memory>
 #include <string_view>

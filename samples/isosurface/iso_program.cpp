@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "iso_program.hpp"
+#include "isosurface/iso_program.hpp"
 
-#include "two_nearest.hpp"
+#include "volume/two_nearest.hpp"
 
 #include <fmt/format.h>
 

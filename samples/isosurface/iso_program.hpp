@@ -14,8 +14,8 @@
 
 #pragma once
 
-#include "iso_values.hpp"
-#include "kbuffer_program.hpp"
+#include "isosurface/iso_values.hpp"
+#include "programs/kbuffer_program.hpp"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "iso_values.hpp"
+#include "isosurface/iso_values.hpp"
 
-#include "color.hpp"
+#include "lib/scene/color.hpp"
 
 #include <fmt/format.h>
 

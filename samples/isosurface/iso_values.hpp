@@ -5,8 +5,8 @@
 
 #pragma once
 
-#include "result.hpp"
-#include "sorted_faces.hpp"
+#include "lib/result.hpp"
+#include "volume/sorted_faces.hpp"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>

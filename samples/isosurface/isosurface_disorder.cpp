@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "isosurface_disorder.hpp"
+#include "isosurface/isosurface_disorder.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 
 #pragma once
 
-#include "disorder_report.hpp"
-#include "isosurface_renderer.hpp"
+#include "isosurface/isosurface_renderer.hpp"
+#include "volume/disorder_report.hpp"
 
 #include <span>
 

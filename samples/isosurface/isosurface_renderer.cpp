@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "isosurface_renderer.hpp"
+#include "isosurface/isosurface_renderer.hpp"
 
-#include "iso_program.hpp"
-#include "mesh_buffers.hpp"
+#include "isosurface/iso_program.hpp"
+#include "lib/gl/mesh_buffers.hpp"
 
 #include <glm/gtc/type_ptr.hpp>
 

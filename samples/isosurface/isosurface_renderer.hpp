@@ -2,10 +2,10 @@
 
 #pragma once
 
-#include "fragment_stream.hpp"
-#include "iso_values.hpp"
-#include "kbuffer.hpp"
-#include "shading.hpp"
+#include "isosurface/fragment_stream.hpp"
+#include "isosurface/iso_values.hpp"
+#include "isosurface/shading.hpp"
+#include "lib/gl/kbuffer.hpp"
 
 #include <span>
 

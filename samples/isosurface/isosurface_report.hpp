@@ -2,11 +2,11 @@
 
 #pragma once
 
-#include "disorder_report.hpp"
-#include "image.hpp"
-#include "iso_values.hpp"
-#include "options.hpp"
-#include "source.hpp"
+#include "isosurface/iso_values.hpp"
+#include "isosurface/options.hpp"
+#include "isosurface/source.hpp"
+#include "lib/io/image.hpp"
+#include "volume/disorder_report.hpp"
 
 #include <cstddef>
 #include <filesystem>

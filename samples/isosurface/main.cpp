@@ -6,16 +6,16 @@
 //     draw                       FragmentStream, IsosurfaceRenderer::capture
 //     resolve                    ShadingPass
 
-#include "context.hpp"
-#include "isosurface_disorder.hpp"
-#include "isosurface_renderer.hpp"
-#include "isosurface_report.hpp"
-#include "long_work.hpp"
-#include "options.hpp"
-#include "particles.hpp"
-#include "say.hpp"
-#include "source.hpp"
-#include "timing.hpp"
+#include "isosurface/isosurface_disorder.hpp"
+#include "isosurface/isosurface_renderer.hpp"
+#include "isosurface/isosurface_report.hpp"
+#include "isosurface/options.hpp"
+#include "isosurface/particles.hpp"
+#include "isosurface/source.hpp"
+#include "lib/app/long_work.hpp"
+#include "lib/app/say.hpp"
+#include "lib/app/timing.hpp"
+#include "lib/gl/context.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "options.hpp"
+#include "isosurface/options.hpp"
 
-#include "order_option.hpp"
+#include "volume/order_option.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -2,11 +2,11 @@
 
 #pragma once
 
-#include "command_line.hpp"
-#include "iso_program.hpp"
-#include "iso_values.hpp"
-#include "output.hpp"
-#include "sorted_faces.hpp"
+#include "isosurface/iso_program.hpp"
+#include "isosurface/iso_values.hpp"
+#include "lib/app/command_line.hpp"
+#include "transparency/output.hpp"
+#include "volume/sorted_faces.hpp"
 
 #include <filesystem>
 #include <optional>

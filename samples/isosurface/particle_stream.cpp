@@ -3,11 +3,11 @@
 // A point has the depth of its center all over: sorted by depth, points come in order. The scalar
 // is that of the center and what the field's gradient there adds.
 
-#include "fragment_stream.hpp"
+#include "isosurface/fragment_stream.hpp"
 
-#include "disorder_capture.hpp"
-#include "gradients.hpp"
-#include "radix_sort.hpp"
+#include "isosurface/gradients.hpp"
+#include "volume/disorder_capture.hpp"
+#include "volume/radix_sort.hpp"
 
 #include <glm/gtc/type_ptr.hpp>
 

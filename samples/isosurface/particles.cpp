@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "particles.hpp"
+#include "isosurface/particles.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

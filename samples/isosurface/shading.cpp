@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "shading.hpp"
+#include "isosurface/shading.hpp"
 
-#include "mesh_buffers.hpp"
+#include "lib/gl/mesh_buffers.hpp"
 
 namespace kb
 {

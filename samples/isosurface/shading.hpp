@@ -15,9 +15,9 @@
 
 #pragma once
 
-#include "camera.hpp"
-#include "gl_objects.hpp"
-#include "kbuffer.hpp"
+#include "lib/gl/gl_objects.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "lib/scene/camera.hpp"
 
 #include <glm/vec3.hpp>
 

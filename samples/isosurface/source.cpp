@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-#include "source.hpp"
+#include "isosurface/source.hpp"
 
-#include "particles.hpp"
-#include "surface_faces.hpp"
-#include "unit_sphere.hpp"
+#include "isosurface/particles.hpp"
+#include "isosurface/surface_faces.hpp"
+#include "lib/scene/unit_sphere.hpp"
 
 namespace kb
 {

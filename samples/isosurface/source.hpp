@@ -2,9 +2,9 @@
 
 #pragma once
 
-#include "fragment_stream.hpp"
-#include "iso_values.hpp"
-#include "options.hpp"
+#include "isosurface/fragment_stream.hpp"
+#include "isosurface/iso_values.hpp"
+#include "isosurface/options.hpp"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>

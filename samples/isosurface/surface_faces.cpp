@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "surface_faces.hpp"
+#include "isosurface/surface_faces.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -2,8 +2,8 @@
 
 #pragma once
 
-#include "faces.hpp"
-#include "iso_values.hpp"
+#include "isosurface/iso_values.hpp"
+#include "volume/faces.hpp"
 
 #include <glm/vec4.hpp>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "accumulation.hpp"
+#include "peeling/accumulation.hpp"
 
-#include "kbuffer.hpp"
-#include "mesh_buffers.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "lib/gl/mesh_buffers.hpp"
 
 #include <fmt/format.h>
 

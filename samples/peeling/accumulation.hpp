@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "depth_peeling.hpp"
+#include "lib/gl/depth_peeling.hpp"
 
 #include <glm/vec3.hpp>
 

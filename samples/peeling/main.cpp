@@ -9,15 +9,15 @@
 //     draw                       Renderer::draw_pass
 //     resolve                    Accumulation
 
-#include "accumulation.hpp"
-#include "context.hpp"
-#include "kbuffer.hpp"
-#include "layer_files.hpp"
-#include "mesh_report.hpp"
-#include "options.hpp"
-#include "report_file.hpp"
-#include "scene.hpp"
-#include "timing.hpp"
+#include "lib/app/report_file.hpp"
+#include "lib/app/timing.hpp"
+#include "lib/gl/context.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "lib/io/layer_files.hpp"
+#include "peeling/accumulation.hpp"
+#include "peeling/options.hpp"
+#include "transparency/mesh_report.hpp"
+#include "transparency/scene.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

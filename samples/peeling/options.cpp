@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "options.hpp"
+#include "peeling/options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <map>

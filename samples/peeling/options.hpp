@@ -2,10 +2,10 @@
 
 #pragma once
 
-#include "command_line.hpp"
-#include "depth_peeling.hpp"
-#include "output.hpp"
-#include "scene_options.hpp"
+#include "lib/app/command_line.hpp"
+#include "lib/gl/depth_peeling.hpp"
+#include "transparency/output.hpp"
+#include "transparency/scene_options.hpp"
 
 #include <filesystem>
 #include <string>

@@ -9,7 +9,7 @@
 // overtake others of the same depth. CMP tests for less than zero: hence -p. It moves bits, so
 // packed colors pass.
 
-#include "kbuffer_program.hpp"
+#include "programs/kbuffer_program.hpp"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 
 #pragma once
 
-#include "result.hpp"
+#include "lib/result.hpp"
 
 #include <string>
 #include <string_view>

@@ -2,9 +2,9 @@
 //
 // Prints a k-buffer program for ProgramStringARB(GL_KBUFFER_PROGRAM_MESA, ...).
 
-#include "command_line.hpp"
-#include "kbuffer_program.hpp"
-#include "output_file.hpp"
+#include "lib/app/command_line.hpp"
+#include "lib/io/output_file.hpp"
+#include "programs/kbuffer_program.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

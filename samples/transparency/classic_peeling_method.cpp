@@ -4,8 +4,8 @@
 // depth test on and discards what is not behind the depths of pass i - 1. Of fragments with equal
 // depth it keeps one.
 
-#include "kbuffer.hpp"
-#include "resolve.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "transparency/resolve.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 // Clear the k-buffer, enable the program, draw once: entry by entry the k nearest fragments of
 // every pixel are there, sorted.
 
-#include "kbuffer.hpp"
-#include "resolve.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "transparency/resolve.hpp"
 
 #include <fmt/format.h>
 

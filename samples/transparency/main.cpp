@@ -7,15 +7,15 @@
 //     draw                       KBufferMethod::capture, PeelingMethod::capture
 //     resolve                    ResolvePass
 
-#include "command_line.hpp"
-#include "context.hpp"
-#include "kbuffer.hpp"
-#include "mesh_report.hpp"
-#include "method.hpp"
-#include "output.hpp"
-#include "report_file.hpp"
-#include "scene_options.hpp"
-#include "timing.hpp"
+#include "lib/app/command_line.hpp"
+#include "lib/app/report_file.hpp"
+#include "lib/app/timing.hpp"
+#include "lib/gl/context.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "transparency/mesh_report.hpp"
+#include "transparency/method.hpp"
+#include "transparency/output.hpp"
+#include "transparency/scene_options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

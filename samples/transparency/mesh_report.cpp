@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "mesh_report.hpp"
+#include "transparency/mesh_report.hpp"
 
-#include "report_file.hpp"
-#include "version.hpp"
+#include "lib/app/report_file.hpp"
+#include "lib/version.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

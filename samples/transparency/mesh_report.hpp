@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "image.hpp"
-#include "scene_options.hpp"
+#include "lib/io/image.hpp"
+#include "transparency/scene_options.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -4,9 +4,9 @@
 
 #pragma once
 
-#include "image.hpp"
-#include "kbuffer_program.hpp"
-#include "scene.hpp"
+#include "lib/io/image.hpp"
+#include "programs/kbuffer_program.hpp"
+#include "transparency/scene.hpp"
 
 #include <memory>
 #include <vector>

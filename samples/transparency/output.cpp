@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "output.hpp"
+#include "transparency/output.hpp"
 
-#include "layer_files.hpp"
+#include "lib/io/layer_files.hpp"
 
 #include <span>
 

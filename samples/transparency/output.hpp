@@ -2,8 +2,8 @@
 
 #pragma once
 
-#include "method.hpp"
-#include "output_file.hpp"
+#include "lib/io/output_file.hpp"
+#include "transparency/method.hpp"
 
 #include <filesystem>
 #include <vector>

@@ -3,8 +3,8 @@
 // Clear the layers, enable GL_DEPTH_PEELING, draw once: layer by layer the k nearest fragments of
 // every pixel are there, sorted.
 
-#include "depth_peeling.hpp"
-#include "resolve.hpp"
+#include "lib/gl/depth_peeling.hpp"
+#include "transparency/resolve.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "resolve.hpp"
+#include "transparency/resolve.hpp"
 
 #include <fmt/format.h>
 

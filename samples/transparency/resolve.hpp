@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "method.hpp"
+#include "transparency/method.hpp"
 
 #include <string>
 

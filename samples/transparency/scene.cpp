@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "scene.hpp"
+#include "transparency/scene.hpp"
 
 #include <glm/gtc/type_ptr.hpp>
 

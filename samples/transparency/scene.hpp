@@ -6,8 +6,8 @@
 
 #pragma once
 
-#include "camera.hpp"
-#include "mesh_buffers.hpp"
+#include "lib/gl/mesh_buffers.hpp"
+#include "lib/scene/camera.hpp"
 
 #include <optional>
 #include <string>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "scene_options.hpp"
+#include "transparency/scene_options.hpp"
 
-#include "scene.hpp"
+#include "transparency/scene.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -4,9 +4,9 @@
 
 #pragma once
 
-#include "camera.hpp"
-#include "command_line.hpp"
-#include "mesh.hpp"
+#include "lib/app/command_line.hpp"
+#include "lib/io/mesh.hpp"
+#include "lib/scene/camera.hpp"
 
 #include <optional>
 #include <string>

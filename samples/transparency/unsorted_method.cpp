@@ -2,7 +2,7 @@
 //
 // Plain "over" blending in the order in which the triangles come: what one gets without sorting.
 
-#include "method.hpp"
+#include "transparency/method.hpp"
 
 namespace kb
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "cell_clusters.hpp"
+#include "volume/cell_clusters.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>

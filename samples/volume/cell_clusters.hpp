@@ -2,8 +2,8 @@
 
 #pragma once
 
-#include "color_tolerance.hpp"
-#include "faces.hpp"
+#include "volume/color_tolerance.hpp"
+#include "volume/faces.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "cell_order.hpp"
+#include "volume/cell_order.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "color_tolerance.hpp"
+#include "volume/color_tolerance.hpp"
 
-#include "preintegration.hpp"
+#include "volume/preintegration.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "transfer_function.hpp"
+#include "volume/transfer_function.hpp"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "disorder.hpp"
+#include "volume/disorder.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "disorder_capture.hpp"
+#include "volume/disorder_capture.hpp"
 
-#include "depth_peeling.hpp"
-#include "face_program.hpp"
+#include "lib/gl/depth_peeling.hpp"
+#include "volume/face_program.hpp"
 
 #include <fmt/format.h>
 

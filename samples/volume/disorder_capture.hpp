@@ -2,9 +2,9 @@
 
 #pragma once
 
-#include "disorder.hpp"
-#include "long_work.hpp"
-#include "sorted_faces.hpp"
+#include "lib/app/long_work.hpp"
+#include "volume/disorder.hpp"
+#include "volume/sorted_faces.hpp"
 
 #include <cstddef>
 #include <functional>

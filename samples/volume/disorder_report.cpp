@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "disorder_report.hpp"
+#include "volume/disorder_report.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 
 #pragma once
 
-#include "disorder.hpp"
-#include "image.hpp"
+#include "lib/io/image.hpp"
+#include "volume/disorder.hpp"
 
 #include <cstdint>
 #include <optional>

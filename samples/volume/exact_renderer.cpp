@@ -4,12 +4,12 @@
 // composites them, from where the last one left off: it reads what that left in one pair of
 // textures and writes the other.
 
-#include "depth_peeling.hpp"
-#include "face_program.hpp"
-#include "mesh_buffers.hpp"
-#include "segment_texture.hpp"
-#include "volume_program.hpp"
-#include "volume_renderer.hpp"
+#include "lib/gl/depth_peeling.hpp"
+#include "lib/gl/mesh_buffers.hpp"
+#include "volume/face_program.hpp"
+#include "volume/segment_texture.hpp"
+#include "volume/volume_program.hpp"
+#include "volume/volume_renderer.hpp"
 
 #include <fmt/format.h>
 

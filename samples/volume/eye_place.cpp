@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "eye_place.hpp"
+#include "volume/eye_place.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

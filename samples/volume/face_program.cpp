@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "face_program.hpp"
+#include "volume/face_program.hpp"
 
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>

@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "gl_objects.hpp"
-#include "sorted_faces.hpp"
+#include "lib/gl/gl_objects.hpp"
+#include "volume/sorted_faces.hpp"
 
 #include <string>
 

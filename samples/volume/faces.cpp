@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "faces.hpp"
+#include "volume/faces.hpp"
 
 #include <algorithm>
 #include <array>

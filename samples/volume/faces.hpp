@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "tet_grid.hpp"
+#include "lib/io/tet_grid.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

@@ -4,13 +4,13 @@
 //     draw    the faces, once: the program composites what has left those that wait
 //     flush   a pass over all pixels: the k that still wait, in order
 
-#include "face_program.hpp"
-#include "kbuffer.hpp"
-#include "mesh_buffers.hpp"
-#include "segment_texture.hpp"
-#include "two_nearest.hpp"
-#include "volume_program.hpp"
-#include "volume_renderer.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "lib/gl/mesh_buffers.hpp"
+#include "volume/face_program.hpp"
+#include "volume/segment_texture.hpp"
+#include "volume/two_nearest.hpp"
+#include "volume/volume_program.hpp"
+#include "volume/volume_renderer.hpp"
 
 #include <fmt/format.h>
 

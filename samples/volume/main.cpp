@@ -9,20 +9,20 @@
 //     draw    make_volume_program: two nearest fragments, table lookup, composition
 //     flush   the fragments that still wait
 
-#include "cell_clusters.hpp"
-#include "context.hpp"
-#include "kbuffer.hpp"
-#include "long_work.hpp"
-#include "output.hpp"
-#include "say.hpp"
-#include "segment_choice.hpp"
-#include "subdivide.hpp"
-#include "timing.hpp"
-#include "volume_disorder.hpp"
-#include "volume_options.hpp"
-#include "volume_renderer.hpp"
-#include "volume_report.hpp"
-#include "volume_scene.hpp"
+#include "lib/app/long_work.hpp"
+#include "lib/app/say.hpp"
+#include "lib/app/timing.hpp"
+#include "lib/gl/context.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "transparency/output.hpp"
+#include "volume/cell_clusters.hpp"
+#include "volume/segment_choice.hpp"
+#include "volume/subdivide.hpp"
+#include "volume/volume_disorder.hpp"
+#include "volume/volume_options.hpp"
+#include "volume/volume_renderer.hpp"
+#include "volume/volume_report.hpp"
+#include "volume/volume_scene.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "order_option.hpp"
+#include "volume/order_option.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -2,8 +2,8 @@
 
 #pragma once
 
-#include "command_line.hpp"
-#include "sorted_faces.hpp"
+#include "lib/app/command_line.hpp"
+#include "volume/sorted_faces.hpp"
 
 namespace kb
 {

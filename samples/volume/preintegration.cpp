@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "preintegration.hpp"
+#include "volume/preintegration.hpp"
 
 #include <glm/common.hpp>
 

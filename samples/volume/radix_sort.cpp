@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "radix_sort.hpp"
+#include "volume/radix_sort.hpp"
 
 #include <array>
 #include <bit>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "ray_chords.hpp"
+#include "volume/ray_chords.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>

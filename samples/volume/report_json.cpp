@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "report_json.hpp"
+#include "volume/report_json.hpp"
 
 #include <nlohmann/json.hpp>
 

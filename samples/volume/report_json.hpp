@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "disorder_report.hpp"
-#include "scalar_range.hpp"
+#include "volume/disorder_report.hpp"
+#include "volume/scalar_range.hpp"
 
 #include <glm/vec3.hpp>
 #include <nlohmann/json_fwd.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "scalar_range.hpp"
+#include "volume/scalar_range.hpp"
 
 #include <fmt/format.h>
 

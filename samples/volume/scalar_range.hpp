@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "tet_grid.hpp"
+#include "lib/io/tet_grid.hpp"
 
 #include <span>
 #include <string>

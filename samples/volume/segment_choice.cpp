@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-#include "segment_choice.hpp"
+#include "volume/segment_choice.hpp"
 
-#include "ray_chords.hpp"
-#include "segment_opacity.hpp"
-#include "segment_texture.hpp"
+#include "volume/ray_chords.hpp"
+#include "volume/segment_opacity.hpp"
+#include "volume/segment_texture.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

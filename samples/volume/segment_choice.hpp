@@ -2,10 +2,10 @@
 
 #pragma once
 
-#include "cell_clusters.hpp"
-#include "segment_lookup.hpp"
-#include "tet_grid.hpp"
-#include "transfer_function.hpp"
+#include "lib/io/tet_grid.hpp"
+#include "volume/cell_clusters.hpp"
+#include "volume/segment_lookup.hpp"
+#include "volume/transfer_function.hpp"
 
 #include <cstddef>
 #include <span>

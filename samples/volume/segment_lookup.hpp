@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "preintegration.hpp"
+#include "volume/preintegration.hpp"
 
 namespace kb
 {

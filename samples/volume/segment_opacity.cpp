@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "segment_opacity.hpp"
+#include "volume/segment_opacity.hpp"
 
 #include <fmt/format.h>
 

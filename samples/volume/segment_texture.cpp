@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "segment_texture.hpp"
+#include "volume/segment_texture.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "gl_objects.hpp"
-#include "preintegration.hpp"
+#include "lib/gl/gl_objects.hpp"
+#include "volume/preintegration.hpp"
 
 #include <string>
 

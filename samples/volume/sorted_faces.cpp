@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "sorted_faces.hpp"
+#include "volume/sorted_faces.hpp"
 
-#include "eye_place.hpp"
-#include "radix_sort.hpp"
+#include "volume/eye_place.hpp"
+#include "volume/radix_sort.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_precision.hpp>

@@ -2,11 +2,11 @@
 
 #pragma once
 
-#include "camera.hpp"
-#include "cell_order.hpp"
-#include "faces.hpp"
-#include "gl_objects.hpp"
-#include "scalar_range.hpp"
+#include "lib/gl/gl_objects.hpp"
+#include "lib/scene/camera.hpp"
+#include "volume/cell_order.hpp"
+#include "volume/faces.hpp"
+#include "volume/scalar_range.hpp"
 
 #include <glm/vec4.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "subdivide.hpp"
+#include "volume/subdivide.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_precision.hpp>

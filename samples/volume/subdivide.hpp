@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "faces.hpp"
+#include "volume/faces.hpp"
 
 namespace kb
 {

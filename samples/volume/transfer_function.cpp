@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "transfer_function.hpp"
+#include "volume/transfer_function.hpp"
 
-#include "file.hpp"
+#include "lib/io/file.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

@@ -9,8 +9,8 @@
 
 #pragma once
 
-#include "result.hpp"
-#include "scalar_range.hpp"
+#include "lib/result.hpp"
+#include "volume/scalar_range.hpp"
 
 #include <glm/vec3.hpp>
 

@@ -9,7 +9,7 @@
 //
 // Of equal depths those farther on in the line have come first, and they leave first.
 
-#include "two_nearest.hpp"
+#include "volume/two_nearest.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-#include "volume_disorder.hpp"
+#include "volume/volume_disorder.hpp"
 
-#include "disorder_capture.hpp"
-#include "kbuffer.hpp"
-#include "volume_renderer.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "volume/disorder_capture.hpp"
+#include "volume/volume_renderer.hpp"
 
 namespace kb
 {

@@ -2,11 +2,11 @@
 
 #pragma once
 
-#include "disorder_report.hpp"
-#include "long_work.hpp"
-#include "sorted_faces.hpp"
-#include "volume_options.hpp"
-#include "volume_scene.hpp"
+#include "lib/app/long_work.hpp"
+#include "volume/disorder_report.hpp"
+#include "volume/sorted_faces.hpp"
+#include "volume/volume_options.hpp"
+#include "volume/volume_scene.hpp"
 
 namespace kb
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "volume_options.hpp"
+#include "volume/volume_options.hpp"
 
-#include "order_option.hpp"
-#include "volume_program.hpp"
+#include "volume/order_option.hpp"
+#include "volume/volume_program.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -2,10 +2,10 @@
 
 #pragma once
 
-#include "camera.hpp"
-#include "command_line.hpp"
-#include "sorted_faces.hpp"
-#include "subdivide.hpp"
+#include "lib/app/command_line.hpp"
+#include "lib/scene/camera.hpp"
+#include "volume/sorted_faces.hpp"
+#include "volume/subdivide.hpp"
 
 #include <glm/vec3.hpp>
 

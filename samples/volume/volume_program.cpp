@@ -8,12 +8,12 @@
 // alpha and fading are those of segment_opacity.hpp: of a segment of no length both are 0, and that
 // adds nothing at all.
 
-#include "volume_program.hpp"
+#include "volume/volume_program.hpp"
 
-#include "face_program.hpp"
-#include "segment_opacity.hpp"
-#include "segment_texture.hpp"
-#include "two_nearest.hpp"
+#include "volume/face_program.hpp"
+#include "volume/segment_opacity.hpp"
+#include "volume/segment_texture.hpp"
+#include "volume/two_nearest.hpp"
 
 #include <fmt/format.h>
 

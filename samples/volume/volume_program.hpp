@@ -21,7 +21,7 @@
 
 #pragma once
 
-#include "segment_lookup.hpp"
+#include "volume/segment_lookup.hpp"
 
 #include <string>
 

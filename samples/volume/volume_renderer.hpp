@@ -2,10 +2,10 @@
 
 #pragma once
 
-#include "long_work.hpp"
-#include "segment_lookup.hpp"
-#include "sorted_faces.hpp"
-#include "transfer_function.hpp"
+#include "lib/app/long_work.hpp"
+#include "volume/segment_lookup.hpp"
+#include "volume/sorted_faces.hpp"
+#include "volume/transfer_function.hpp"
 
 #include <glm/vec3.hpp>
 

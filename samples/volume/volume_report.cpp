@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 
-#include "volume_report.hpp"
+#include "volume/volume_report.hpp"
 
-#include "report_file.hpp"
-#include "report_json.hpp"
-#include "say.hpp"
-#include "timing.hpp"
+#include "lib/app/report_file.hpp"
+#include "lib/app/say.hpp"
+#include "lib/app/timing.hpp"
+#include "volume/report_json.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -2,11 +2,11 @@
 
 #pragma once
 
-#include "disorder_report.hpp"
-#include "image.hpp"
-#include "segment_choice.hpp"
-#include "volume_options.hpp"
-#include "volume_scene.hpp"
+#include "lib/io/image.hpp"
+#include "volume/disorder_report.hpp"
+#include "volume/segment_choice.hpp"
+#include "volume/volume_options.hpp"
+#include "volume/volume_scene.hpp"
 
 #include <cstddef>
 #include <filesystem>

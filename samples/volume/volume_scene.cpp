@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "volume_scene.hpp"
+#include "volume/volume_scene.hpp"
 
-#include "sorted_faces.hpp"
+#include "volume/sorted_faces.hpp"
 
 #include <algorithm>
 

@@ -2,9 +2,9 @@
 
 #pragma once
 
-#include "faces.hpp"
-#include "transfer_function.hpp"
-#include "volume_options.hpp"
+#include "volume/faces.hpp"
+#include "volume/transfer_function.hpp"
+#include "volume/volume_options.hpp"
 
 #include <glm/vec3.hpp>
 

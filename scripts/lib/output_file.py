@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files that the commands write, by the rules of samples/lib/output_file.hpp: a regular file is
+"""Files that the commands write, by the rules of samples/lib/io/output_file.hpp: a regular file is
 replaced as a whole or not at all and keeps its permissions, a device or a pipe is opened and
 written, - is the standard output, and symbolic links are followed."""
 

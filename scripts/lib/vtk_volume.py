@@ -75,7 +75,7 @@ def make_property(scene):
 
 
 def place_camera(camera, scene):
-    """OrbitCamera of samples/lib/camera.cpp."""
+    """OrbitCamera of samples/lib/scene/camera.cpp."""
     view = scene["camera"]
     azimuth, elevation = numpy.radians(view["azimuth"]), numpy.radians(view["elevation"])
     toward = numpy.array([numpy.cos(elevation) * numpy.sin(azimuth), numpy.sin(elevation),
@@ -148,7 +148,7 @@ class Picture:
 
 
 def write_pfm(path, pixels):
-    """The color channels, as samples/lib/image_file.cpp writes them."""
+    """The color channels, as samples/lib/io/image_file.cpp writes them."""
     height, width, _ = pixels.shape
     with output_file.written(path) as made, open(made, "wb") as file:
         file.write(f"PF\n{width} {height}\n-1.0\n".encode())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "box_chords.hpp"
+#include "tests/hard_cases/box_chords.hpp"
 
 #include <algorithm>
 #include <cmath>

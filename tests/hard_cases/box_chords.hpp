@@ -2,9 +2,9 @@
 
 #pragma once
 
-#include "box.hpp"
-#include "camera.hpp"
-#include "tet_grid.hpp"
+#include "lib/io/tet_grid.hpp"
+#include "lib/scene/camera.hpp"
+#include "tests/integrator/box.hpp"
 
 namespace kb::hard
 {

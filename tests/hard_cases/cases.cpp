@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "cases.hpp"
+#include "tests/hard_cases/cases.hpp"
 
 #include <algorithm>
 

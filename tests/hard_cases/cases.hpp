@@ -5,8 +5,8 @@
 
 #pragma once
 
-#include "method.hpp"
-#include "outcome.hpp"
+#include "tests/hard_cases/method.hpp"
+#include "tests/hard_cases/outcome.hpp"
 
 #include <functional>
 #include <string>

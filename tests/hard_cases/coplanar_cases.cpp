@@ -2,8 +2,8 @@
 //
 // Fragments of equal or nearly equal depth: none is lost, and their order is that of arrival.
 
-#include "cases.hpp"
-#include "model.hpp"
+#include "tests/hard_cases/cases.hpp"
+#include "tests/hard_cases/model.hpp"
 
 #include <array>
 #include <utility>

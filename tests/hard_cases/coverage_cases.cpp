@@ -2,7 +2,7 @@
 //
 // Which samples a primitive covers, and with what depth at their edges.
 
-#include "cases.hpp"
+#include "tests/hard_cases/cases.hpp"
 
 #include <glm/gtc/constants.hpp>
 

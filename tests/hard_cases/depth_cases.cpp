@@ -2,7 +2,7 @@
 //
 // Depths that differ by little, or by much, or not at all.
 
-#include "cases.hpp"
+#include "tests/hard_cases/cases.hpp"
 
 #include <algorithm>
 #include <cmath>

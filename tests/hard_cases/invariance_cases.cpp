@@ -3,8 +3,8 @@
 // What must not change the layers, with random scenes. Those of the driver's environment (threads,
 // vector width, culling, shader cache) are compared by tests/hard_cases/run.
 
-#include "cases.hpp"
-#include "model.hpp"
+#include "tests/hard_cases/cases.hpp"
+#include "tests/hard_cases/model.hpp"
 
 #include <algorithm>
 #include <array>

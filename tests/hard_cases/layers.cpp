@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "layers.hpp"
+#include "tests/hard_cases/layers.hpp"
 
-#include "gl_scene.hpp"
+#include "bench/gl_scene.hpp"
 
 #include <glm/gtc/type_ptr.hpp>
 

@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "camera.hpp"
-#include "gl_objects.hpp"
+#include "lib/gl/gl_objects.hpp"
+#include "lib/scene/camera.hpp"
 
 #include <glm/vec4.hpp>
 

@@ -3,13 +3,13 @@
 // Measures the hard cases on the driver that the environment chooses, and writes the rows of their
 // table as JSON.
 
-#include "cases.hpp"
-#include "rivals.hpp"
+#include "tests/hard_cases/cases.hpp"
+#include "tests/hard_cases/rivals.hpp"
 
-#include "command_line.hpp"
-#include "context.hpp"
-#include "gl_scene.hpp"
-#include "output_file.hpp"
+#include "bench/gl_scene.hpp"
+#include "lib/app/command_line.hpp"
+#include "lib/gl/context.hpp"
+#include "lib/io/output_file.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

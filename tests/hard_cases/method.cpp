@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "method.hpp"
+#include "tests/hard_cases/method.hpp"
 
 #include <algorithm>
 #include <bit>

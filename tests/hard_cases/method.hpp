@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "layers.hpp"
-#include "scene.hpp"
+#include "tests/hard_cases/layers.hpp"
+#include "tests/hard_cases/scene.hpp"
 
 #include <functional>
 #include <memory>

@@ -2,9 +2,9 @@
 //
 // All of the other cases at random, against a model.
 
-#include "cases.hpp"
+#include "tests/hard_cases/cases.hpp"
 
-#include "model.hpp"
+#include "tests/hard_cases/model.hpp"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "model.hpp"
+#include "tests/hard_cases/model.hpp"
 
-#include "gl_scene.hpp"
+#include "bench/gl_scene.hpp"
 
 #include <algorithm>
 #include <array>

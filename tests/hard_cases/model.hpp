@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "method.hpp"
+#include "tests/hard_cases/method.hpp"
 
 namespace kb::hard
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "outcome.hpp"
+#include "tests/hard_cases/outcome.hpp"
 
 #include <algorithm>
 #include <cmath>

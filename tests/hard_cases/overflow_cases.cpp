@@ -2,8 +2,8 @@
 //
 // More fragments than layers.
 
-#include "cases.hpp"
-#include "model.hpp"
+#include "tests/hard_cases/cases.hpp"
+#include "tests/hard_cases/model.hpp"
 
 #include <cmath>
 #include <numeric>

@@ -2,11 +2,11 @@
 //
 // GL_MESA_depth_peeling.
 
-#include "method.hpp"
-#include "model.hpp"
+#include "tests/hard_cases/method.hpp"
+#include "tests/hard_cases/model.hpp"
 
-#include "depth_peeling.hpp"
-#include "gl_scene.hpp"
+#include "bench/gl_scene.hpp"
+#include "lib/gl/depth_peeling.hpp"
 
 namespace kb::hard
 {

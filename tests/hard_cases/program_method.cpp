@@ -3,10 +3,10 @@
 // GL_MESA_kbuffer_program: insertion by the programs of samples/programs, composition by programs
 // that blend in single precision.
 
-#include "method.hpp"
+#include "tests/hard_cases/method.hpp"
 
-#include "gl_scene.hpp"
-#include "kbuffer_program.hpp"
+#include "bench/gl_scene.hpp"
+#include "programs/kbuffer_program.hpp"
 
 #include <array>
 #include <regex>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 
-#include "rival_methods.hpp"
+#include "tests/hard_cases/rival_methods.hpp"
 
-#include "cases.hpp"
+#include "tests/hard_cases/cases.hpp"
 
-#include "gl_scene.hpp"
-#include "kbuffer.hpp"
+#include "bench/gl_scene.hpp"
+#include "lib/gl/kbuffer.hpp"
 
 #include <array>
 #include <cmath>

@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "gl.hpp"
-#include "outcome.hpp"
+#include "lib/gl/gl.hpp"
+#include "tests/hard_cases/outcome.hpp"
 
 namespace kb::hard
 {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 
-#include "rivals.hpp"
+#include "tests/hard_cases/rivals.hpp"
 
-#include "cases.hpp"
-#include "rival_methods.hpp"
+#include "tests/hard_cases/cases.hpp"
+#include "tests/hard_cases/rival_methods.hpp"
 
-#include "background.hpp"
-#include "capture.hpp"
-#include "gl_scene.hpp"
-#include "kbuffer.hpp"
-#include "renderer.hpp"
+#include "bench/background.hpp"
+#include "bench/capture.hpp"
+#include "bench/gl_scene.hpp"
+#include "bench/renderer.hpp"
+#include "lib/gl/kbuffer.hpp"
 
 #include <algorithm>
 #include <array>

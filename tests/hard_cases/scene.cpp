@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "scene.hpp"
+#include "tests/hard_cases/scene.hpp"
 
-#include "gl_scene.hpp"
+#include "bench/gl_scene.hpp"
 
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>

@@ -5,9 +5,9 @@
 
 #pragma once
 
-#include "camera.hpp"
-#include "gl_objects.hpp"
-#include "mesh_buffers.hpp"
+#include "lib/gl/gl_objects.hpp"
+#include "lib/gl/mesh_buffers.hpp"
+#include "lib/scene/camera.hpp"
 
 #include <glm/mat4x4.hpp>
 

@@ -2,7 +2,7 @@
 //
 // Numbers at the limits: NaN and infinity, alpha 0 and 1, many thin layers.
 
-#include "cases.hpp"
+#include "tests/hard_cases/cases.hpp"
 
 #include <bit>
 #include <cmath>

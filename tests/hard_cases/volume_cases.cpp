@@ -2,11 +2,11 @@
 //
 // Volumes: small and large optical depths, segments without length, thin cells, pre-integration.
 
-#include "box_chords.hpp"
-#include "cases.hpp"
-#include "volume_scene.hpp"
+#include "tests/hard_cases/box_chords.hpp"
+#include "tests/hard_cases/cases.hpp"
+#include "tests/hard_cases/volume_scene.hpp"
 
-#include "gl_scene.hpp"
+#include "bench/gl_scene.hpp"
 
 #include <fmt/format.h>
 

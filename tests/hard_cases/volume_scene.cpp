@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-#include "volume_scene.hpp"
+#include "tests/hard_cases/volume_scene.hpp"
 
-#include "gl_scene.hpp"
-#include "kbuffer.hpp"
-#include "sorted_faces.hpp"
+#include "bench/gl_scene.hpp"
+#include "lib/gl/kbuffer.hpp"
+#include "volume/sorted_faces.hpp"
 
 #include <algorithm>
 

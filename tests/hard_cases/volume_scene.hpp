@@ -5,12 +5,12 @@
 
 #pragma once
 
-#include "method.hpp"
+#include "tests/hard_cases/method.hpp"
 
-#include "faces.hpp"
-#include "image.hpp"
-#include "transfer_function.hpp"
-#include "volume_renderer.hpp"
+#include "lib/io/image.hpp"
+#include "volume/faces.hpp"
+#include "volume/transfer_function.hpp"
+#include "volume/volume_renderer.hpp"
 
 #include <memory>
 #include <span>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "box.hpp"
+#include "tests/integrator/box.hpp"
 
 #include <algorithm>
 #include <limits>

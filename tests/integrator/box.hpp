@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "ray_segments.hpp"
+#include "tests/integrator/ray_segments.hpp"
 
 namespace kb::integrator
 {

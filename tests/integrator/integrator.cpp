@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "integrator.hpp"
+#include "tests/integrator/integrator.hpp"
 
-#include "segment.hpp"
+#include "tests/integrator/segment.hpp"
 
 #include <algorithm>
 

@@ -5,10 +5,10 @@
 
 #pragma once
 
-#include "medium.hpp"
-#include "ray_segments.hpp"
+#include "tests/integrator/medium.hpp"
+#include "tests/integrator/ray_segments.hpp"
 
-#include "image.hpp"
+#include "lib/io/image.hpp"
 
 #include <glm/vec4.hpp>
 

@@ -2,9 +2,9 @@
 //
 // Draws on the CPU, in double precision, what `volume --json` says it drew.
 
-#include "scene.hpp"
+#include "tests/integrator/scene.hpp"
 
-#include "command_line.hpp"
+#include "lib/app/command_line.hpp"
 
 #include <CLI/CLI.hpp>
 #include <string>

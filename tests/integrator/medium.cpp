@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "medium.hpp"
+#include "tests/integrator/medium.hpp"
 
 #include <cassert>
 #include <cmath>

@@ -10,7 +10,7 @@
 // twice. A ray that meets an edge is moved aside by as much as nothing, always the same way
 // (Edelsbrunner and Muecke, Simulation of Simplicity).
 
-#include "ray_segments.hpp"
+#include "tests/integrator/ray_segments.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "camera.hpp"
+#include "lib/scene/camera.hpp"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>

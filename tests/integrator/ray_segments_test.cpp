@@ -2,9 +2,9 @@
 //
 // Cells along rays, and pictures, against what is known of a box.
 
-#include "box.hpp"
-#include "integrator.hpp"
-#include "tet_grid.hpp"
+#include "lib/io/tet_grid.hpp"
+#include "tests/integrator/box.hpp"
+#include "tests/integrator/integrator.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "scene.hpp"
+#include "tests/integrator/scene.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -4,10 +4,10 @@
 
 #pragma once
 
-#include "integrator.hpp"
+#include "tests/integrator/integrator.hpp"
 
-#include "result.hpp"
-#include "tet_grid.hpp"
+#include "lib/io/tet_grid.hpp"
+#include "lib/result.hpp"
 
 #include <filesystem>
 

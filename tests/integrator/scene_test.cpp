@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "scene.hpp"
+#include "tests/integrator/scene.hpp"
 
-#include "../temp_directory.hpp"
+#include "tests/support/temp_directory.hpp"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@
 // and for n = 9 the bound is 64/15 * 450 * 16^-18 = 4e-19 of the step: below the rounding of
 // doubles.
 
-#include "segment.hpp"
+#include "tests/integrator/segment.hpp"
 
 #include <algorithm>
 #include <array>

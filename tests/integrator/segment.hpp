@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "medium.hpp"
+#include "tests/integrator/medium.hpp"
 
 namespace kb::integrator
 {

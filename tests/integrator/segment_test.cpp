@@ -3,7 +3,7 @@
 // Segments against closed forms. Where no bound is named the tolerance is that of a hundred
 // roundings of numbers up to 1, 1e-14: what is tested is exact but for rounding.
 
-#include "segment.hpp"
+#include "tests/integrator/segment.hpp"
 
 #include <gtest/gtest.h>
 

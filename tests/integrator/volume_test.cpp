@@ -2,12 +2,12 @@
 //
 // The sample `volume`, in processes of its own, against the integrator.
 
-#include "scene.hpp"
+#include "tests/integrator/scene.hpp"
 
-#include "image.hpp"
-#include "process.hpp"
-#include "temp_directory.hpp"
-#include "tet_grid_file.hpp"
+#include "lib/io/image.hpp"
+#include "tests/lib/io/tet_grid_file.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/temp_directory.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

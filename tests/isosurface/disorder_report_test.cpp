@@ -3,11 +3,11 @@
 // What `isosurface` says of the disorder of its fragments. Only on drivers where disorder can be
 // measured: see capture_disorder.
 
-#include "isosurface_test.hpp"
+#include "tests/isosurface/isosurface_test.hpp"
 
-#include "isosurface_disorder.hpp"
-#include "particles.hpp"
-#include "unit_sphere.hpp"
+#include "isosurface/isosurface_disorder.hpp"
+#include "isosurface/particles.hpp"
+#include "lib/scene/unit_sphere.hpp"
 
 namespace kb::test
 {

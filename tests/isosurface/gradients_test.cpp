@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "gradients.hpp"
+#include "isosurface/gradients.hpp"
 
-#include "particles.hpp"
+#include "isosurface/particles.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

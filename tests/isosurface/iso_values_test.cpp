@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "iso_values.hpp"
+#include "isosurface/iso_values.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #pragma once
 
-#include "context.hpp"
-#include "isosurface_renderer.hpp"
+#include "isosurface/isosurface_renderer.hpp"
+#include "lib/gl/context.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 //
 // Surfaces of particles, drawn in this process on the Mesa that LD_LIBRARY_PATH leads to.
 
-#include "isosurface_test.hpp"
-#include "picture_rays.hpp"
+#include "tests/isosurface/isosurface_test.hpp"
+#include "tests/isosurface/picture_rays.hpp"
 
-#include "particles.hpp"
+#include "isosurface/particles.hpp"
 
 #include <glm/geometric.hpp>
 

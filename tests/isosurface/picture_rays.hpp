@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "isosurface_test.hpp"
+#include "tests/isosurface/isosurface_test.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>

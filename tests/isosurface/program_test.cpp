@@ -2,9 +2,9 @@
 //
 // The k-buffer program on streams of fragments that are given one by one, the same in all pixels.
 
-#include "isosurface_test.hpp"
+#include "tests/isosurface/isosurface_test.hpp"
 
-#include "mesh_buffers.hpp"
+#include "lib/gl/mesh_buffers.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "surface_reference.hpp"
+#include "tests/isosurface/surface_reference.hpp"
 
 namespace kb::test
 {

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "ray_segments.hpp"
+#include "tests/integrator/ray_segments.hpp"
 
 #include <optional>
 #include <span>

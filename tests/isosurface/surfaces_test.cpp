@@ -2,12 +2,12 @@
 //
 // Surfaces of grids, drawn in this process on the Mesa that LD_LIBRARY_PATH leads to.
 
-#include "isosurface_test.hpp"
-#include "picture_rays.hpp"
-#include "surface_faces.hpp"
-#include "surface_reference.hpp"
+#include "isosurface/surface_faces.hpp"
+#include "tests/isosurface/isosurface_test.hpp"
+#include "tests/isosurface/picture_rays.hpp"
+#include "tests/isosurface/surface_reference.hpp"
 
-#include "unit_sphere.hpp"
+#include "lib/scene/unit_sphere.hpp"
 
 #include <glm/geometric.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "a_buffer.hpp"
+#include "tests/reference/a_buffer.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "check.hpp"
+#include "tests/reference/check.hpp"
 
 #include <fmt/format.h>
 

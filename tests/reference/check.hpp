@@ -16,9 +16,9 @@
 
 #pragma once
 
-#include "a_buffer.hpp"
-#include "gl_scene.hpp"
-#include "rasterizer.hpp"
+#include "tests/reference/a_buffer.hpp"
+#include "tests/reference/gl_scene.hpp"
+#include "tests/reference/rasterizer.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "gl_scene.hpp"
+#include "tests/reference/gl_scene.hpp"
 
-#include "context.hpp"
-#include "mesh_buffers.hpp"
+#include "lib/gl/context.hpp"
+#include "lib/gl/mesh_buffers.hpp"
 
 #include <fmt/format.h>
 

@@ -5,9 +5,9 @@
 
 #pragma once
 
-#include "gl_target.hpp"
-#include "rasterizer.hpp"
-#include "scene.hpp"
+#include "tests/reference/gl_target.hpp"
+#include "tests/reference/rasterizer.hpp"
+#include "tests/reference/scene.hpp"
 
 #include <map>
 #include <string>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-#include "gl_target.hpp"
+#include "tests/reference/gl_target.hpp"
 
-#include "mesh_buffers.hpp"
+#include "lib/gl/mesh_buffers.hpp"
 
 #include <fmt/format.h>
 

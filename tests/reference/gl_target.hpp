@@ -5,9 +5,9 @@
 
 #pragma once
 
-#include "a_buffer.hpp"
-#include "gl_objects.hpp"
-#include "scene.hpp"
+#include "lib/gl/gl_objects.hpp"
+#include "tests/reference/a_buffer.hpp"
+#include "tests/reference/scene.hpp"
 
 #include <map>
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "invariances.hpp"
+#include "tests/reference/invariances.hpp"
 
 #include <fmt/format.h>
 

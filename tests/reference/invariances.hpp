@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "check.hpp"
-#include "random_scene.hpp"
+#include "tests/reference/check.hpp"
+#include "tests/reference/random_scene.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -3,13 +3,13 @@
 // Random scenes on a driver against a CPU A-buffer in double precision. check.hpp says what is
 // compared, rasterizer.hpp how exactly, invariances.hpp what else has to hold.
 
-#include "check.hpp"
-#include "command_line.hpp"
-#include "context.hpp"
-#include "invariances.hpp"
-#include "output_file.hpp"
-#include "random_scene.hpp"
-#include "shrink.hpp"
+#include "lib/app/command_line.hpp"
+#include "lib/gl/context.hpp"
+#include "lib/io/output_file.hpp"
+#include "tests/reference/check.hpp"
+#include "tests/reference/invariances.hpp"
+#include "tests/reference/random_scene.hpp"
+#include "tests/reference/shrink.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

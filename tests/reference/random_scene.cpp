@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "random_scene.hpp"
+#include "tests/reference/random_scene.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "scene.hpp"
+#include "tests/reference/scene.hpp"
 
 #include <cstdint>
 #include <random>

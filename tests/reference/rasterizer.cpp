@@ -23,7 +23,7 @@
 //
 // Colors are ratios of two such quantities, color / w and 1 / w.
 
-#include "rasterizer.hpp"
+#include "tests/reference/rasterizer.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -19,7 +19,7 @@
 
 #pragma once
 
-#include "scene.hpp"
+#include "tests/reference/scene.hpp"
 
 #include <array>
 #include <limits>

@@ -3,13 +3,13 @@
 // The reference test's own tests: its files, its rasterizer against cases known by hand, its
 // shrinking, and that it fails when it should.
 
-#include "a_buffer.hpp"
-#include "process.hpp"
-#include "random_scene.hpp"
-#include "rasterizer.hpp"
-#include "scene.hpp"
-#include "shrink.hpp"
-#include "temp_directory.hpp"
+#include "tests/reference/a_buffer.hpp"
+#include "tests/reference/random_scene.hpp"
+#include "tests/reference/rasterizer.hpp"
+#include "tests/reference/scene.hpp"
+#include "tests/reference/shrink.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/temp_directory.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #pragma once
 
-#include "kbuffer_program.hpp"
-#include "result.hpp"
+#include "lib/result.hpp"
+#include "programs/kbuffer_program.hpp"
 
 #include <array>
 #include <cstdint>

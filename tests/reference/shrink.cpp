@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "shrink.hpp"
+#include "tests/reference/shrink.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "scene.hpp"
+#include "tests/reference/scene.hpp"
 
 #include <functional>
 

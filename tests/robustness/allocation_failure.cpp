@@ -6,11 +6,11 @@
 //
 // Each failure has a process of its own, made by fork(), since much is allocated once in a process.
 
-#include "command_line.hpp"
-#include "context.hpp"
-#include "failing_allocations.hpp"
-#include "frame.hpp"
-#include "shared_library.hpp"
+#include "lib/app/command_line.hpp"
+#include "lib/gl/context.hpp"
+#include "lib/gl/shared_library.hpp"
+#include "tests/robustness/failing_allocations.hpp"
+#include "tests/robustness/frame.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

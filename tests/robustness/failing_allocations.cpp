@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "failing_allocations.hpp"
+#include "tests/robustness/failing_allocations.hpp"
 
 #include <elfutils/libdwfl.h>
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 
 #pragma once
 
-#include "result.hpp"
+#include "lib/result.hpp"
 
 #include <cstdint>
 #include <map>

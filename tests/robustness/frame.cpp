@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-#include "frame.hpp"
+#include "tests/robustness/frame.hpp"
 
-#include "depth_peeling.hpp"
-#include "gl_objects.hpp"
-#include "kbuffer.hpp"
+#include "lib/gl/depth_peeling.hpp"
+#include "lib/gl/gl_objects.hpp"
+#include "lib/gl/kbuffer.hpp"
 
 #include <array>
 

@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "context.hpp"
+#include "lib/gl/context.hpp"
 
 #include <vector>
 

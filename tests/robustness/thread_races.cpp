@@ -7,9 +7,9 @@
 //
 // The number of rasterizer threads is LP_NUM_THREADS.
 
-#include "command_line.hpp"
-#include "context.hpp"
-#include "frame.hpp"
+#include "lib/app/command_line.hpp"
+#include "lib/gl/context.hpp"
+#include "tests/robustness/frame.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
