@@ -35,7 +35,7 @@ int main(int argc, char **argv)
     } catch (const kb::bench::BadInput &error) {
         return kb::fail(app, {error.what()}, kb::exit_bad_input);
     } catch (const std::exception &error) {
-        return kb::fail(app, {error.what()}, kb::exit_lacking);
+        return kb::fail(app, {error.what()}, kb::exit_unsupported);
     }
     return kb::finish(app);
 }

@@ -81,26 +81,28 @@ kb::ImageRgbaF surfaces_image(const kb::IsosurfaceRenderer &renderer,
 
 std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &source)
 {
-    const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
+    const auto unsupported = [](const kb::Error &error) {
+        return Failure{error, kb::exit_unsupported};
+    };
     const auto bad_input = [](const kb::Error &error) {
         return Failure{error, kb::exit_bad_input};
     };
 
     auto context = kb::make_context(options.context, options.size, "isosurface");
     if (!context)
-        return lacking(context.error());
+        return unsupported(context.error());
     const kb::Gl &gl = (*context)->gl();
     if (auto supported = kb::require_kbuffer_program(gl); !supported)
-        return lacking(supported.error());
+        return unsupported(supported.error());
     const auto chosen = kb::choose_iso_values(options, source.range);
     const auto values = kb::normalized(chosen, source.range);
     auto stream = kb::make_stream(gl, source, values, point_size(options, source));
     if (!stream)
-        return lacking(stream.error());
+        return unsupported(stream.error());
     const kb::IsosurfaceSettings settings = settings_for(options, source);
     auto renderer = kb::IsosurfaceRenderer::make(gl, settings);
     if (!renderer)
-        return lacking(renderer.error());
+        return unsupported(renderer.error());
     if (auto set = renderer->set_iso_values(values); !set)
         return bad_input(set.error());
 
@@ -113,7 +115,7 @@ std::optional<Failure> run(kb::IsosurfaceOptions options, const kb::Source &sour
     for (int i = 0; i < options.repeat; ++i)
         times.push_back(kb::milliseconds(gl, draw));
     if (auto drawn = kb::check_gl(gl, "drawing"); !drawn)
-        return lacking(drawn.error());
+        return unsupported(drawn.error());
 
     const kb::ImageRgbaF picture = kb::read_color(gl, renderer->framebuffer(), options.size);
     if (auto written = kb::write_outputs(options.outputs, picture, {}); !written)
@@ -214,7 +216,7 @@ int main(int argc, char **argv)
                        : kb::fail(app, failure->error, failure->status);
     } catch (const std::bad_alloc &) {
         return kb::fail(app, kb::Error{"there is not enough memory for --size and --k"},
-                        kb::exit_lacking);
+                        kb::exit_unsupported);
     }
     return kb::finish(app);
 }

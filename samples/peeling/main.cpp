@@ -185,18 +185,20 @@ nlohmann::json make_report(const kb::PeelingOptions &options, const kb::SceneMes
 std::optional<Failure> run(kb::PeelingOptions options, const kb::SceneMesh &mesh,
                            kb::LayerFiles &files)
 {
-    const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
+    const auto unsupported = [](const kb::Error &error) {
+        return Failure{error, kb::exit_unsupported};
+    };
     const auto unwritten = [](const kb::Error &error) {
         return Failure{error, kb::exit_bad_input};
     };
 
     auto context = kb::make_context(options.context, options.layers.size, "peeling");
     if (!context)
-        return lacking(context.error());
+        return unsupported(context.error());
     const kb::Gl &gl = (*context)->gl();
     auto renderer = make_renderer(gl, options, mesh.mesh);
     if (!renderer)
-        return lacking(renderer.error());
+        return unsupported(renderer.error());
     if (auto started = files.start(); !started)
         return unwritten(started.error());
 
@@ -216,7 +218,7 @@ std::optional<Failure> run(kb::PeelingOptions options, const kb::SceneMesh &mesh
         if (!written)
             return unwritten(written.error());
         if (!time)
-            return lacking(time.error());
+            return unsupported(time.error());
         times.push_back(*time);
     }
     const GLuint framebuffer = renderer->accumulation().framebuffer();
@@ -247,7 +249,7 @@ std::optional<Failure> run(kb::PeelingOptions options, const kb::SceneMesh &mesh
 
     while ((*context)->present(framebuffer, options.layers.size, options.scene.camera)) {
         if (auto drawn = renderer->draw_frame(options.scene.camera); !drawn)
-            return lacking(drawn.error());
+            return unsupported(drawn.error());
     }
     return std::nullopt;
 }
@@ -281,7 +283,7 @@ int main(int argc, char **argv)
             return kb::fail(app, failure->error, failure->status);
     } catch (const std::bad_alloc &) {
         return kb::fail(app, kb::Error{"there is not enough memory for --size and --k"},
-                        kb::exit_lacking);
+                        kb::exit_unsupported);
     }
     return kb::finish(app);
 }

@@ -110,15 +110,17 @@ struct Failure {
 
 std::optional<Failure> run(Options options, const kb::SceneMesh &mesh, kb::EntryLayout layout)
 {
-    const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
+    const auto unsupported = [](const kb::Error &error) {
+        return Failure{error, kb::exit_unsupported};
+    };
 
     auto context = kb::make_context(options.context, options.size, "transparency");
     if (!context)
-        return lacking(context.error());
+        return unsupported(context.error());
     const kb::Gl &gl = (*context)->gl();
     auto method = make_method(gl, options, layout);
     if (!method)
-        return lacking(method.error());
+        return unsupported(method.error());
 
     const kb::Scene scene(gl, mesh.mesh, options.scene.alpha);
     const kb::Texture picture =
@@ -127,7 +129,7 @@ std::optional<Failure> run(Options options, const kb::SceneMesh &mesh, kb::Entry
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture.id(), 0);
     if (auto complete = kb::check_framebuffer(gl); !complete)
-        return lacking(complete.error());
+        return unsupported(complete.error());
 
     const auto draw = [&] {
         (*method)->capture(scene, options.scene.camera);
@@ -137,7 +139,7 @@ std::optional<Failure> run(Options options, const kb::SceneMesh &mesh, kb::Entry
     for (int i = 0; i < options.repeat; ++i)
         times.push_back(kb::milliseconds(gl, draw));
     if (auto drawn = kb::check_gl(gl, "drawing"); !drawn)
-        return lacking(drawn.error());
+        return unsupported(drawn.error());
 
     const kb::ImageRgbaF image = kb::read_color(gl, framebuffer.id(), options.size);
     const auto layers =
@@ -202,7 +204,7 @@ int main(int argc, char **argv)
             return kb::fail(app, failure->error, failure->status);
     } catch (const std::bad_alloc &) {
         return kb::fail(app, kb::Error{"there is not enough memory for --size and --k"},
-                        kb::exit_lacking);
+                        kb::exit_unsupported);
     }
     return kb::finish(app);
 }

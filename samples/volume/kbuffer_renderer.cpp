@@ -45,7 +45,7 @@ void main()
 /// Takes the nearest of those that are left, k times. Loops over arrays are slow: few fragments do
 /// without, and not at all where nothing has been drawn. (A branch about loops that index arrays is
 /// more than softpipe can do.)
-std::string sort_and_add(int k)
+std::string composite_waiting(int k)
 {
     constexpr int few = 16;
     std::string text = "    if (front.x > 0.0";
@@ -116,7 +116,7 @@ std::string make_flush_shader(const KBuffer &kbuffer, int k, SegmentLookup looku
     for (int i = 0; i < waiting_entries(k); ++i)
         text += fmt::format("    pair = {}; waiting[{}] = pair.xy; waiting[{}] = pair.zw;\n",
                             fetch(volume_entries(0) + i), 2 * i, 2 * i + 1);
-    text += sort_and_add(k);
+    text += composite_waiting(k);
     text += "    result = vec4(color.rgb + (1.0 - color.a) * background, color.a);\n"
             "}\n";
     return text;

@@ -84,18 +84,20 @@ kb::FaceMesh choose_faces(const kb::VolumeOptions &options, const kb::VolumeScen
 
 std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &scene)
 {
-    const auto lacking = [](const kb::Error &error) { return Failure{error, kb::exit_lacking}; };
+    const auto unsupported = [](const kb::Error &error) {
+        return Failure{error, kb::exit_unsupported};
+    };
 
     auto context = kb::make_context(options.context, options.size, "volume");
     if (!context)
-        return lacking(context.error());
+        return unsupported(context.error());
     const kb::Gl &gl = (*context)->gl();
     kb::VolumeReport report;
     const auto joined = join_cells(gl, options, scene, report);
     const kb::CellClusters *clusters = joined ? &*joined : nullptr;
     auto renderer = make_renderer(gl, options, scene, clusters, report);
     if (!renderer)
-        return lacking(renderer.error());
+        return unsupported(renderer.error());
     kb::SortedFaces faces(gl, choose_faces(options, scene, clusters, report), scene.range,
                           options.order);
 
@@ -109,7 +111,7 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
     };
     for (int i = 0; i < options.repeat; ++i) {
         if (auto drawn = draw(); !drawn)
-            return lacking(drawn.error());
+            return unsupported(drawn.error());
     }
 
     const kb::ImageRgbaF image = kb::read_color(gl, (*renderer)->framebuffer(), options.size);
@@ -164,7 +166,7 @@ std::optional<Failure> run(kb::VolumeOptions options, const kb::VolumeScene &sce
 
     while (open) {
         if (auto drawn = draw(); !drawn)
-            return lacking(drawn.error());
+            return unsupported(drawn.error());
         show();
     }
     return std::nullopt;
@@ -205,7 +207,7 @@ int main(int argc, char **argv)
                        : kb::fail(app, failure->error, failure->status);
     } catch (const std::bad_alloc &) {
         return kb::fail(app, kb::Error{"there is not enough memory for --grid, --size and --k"},
-                        kb::exit_lacking);
+                        kb::exit_unsupported);
     }
     return kb::finish(app);
 }

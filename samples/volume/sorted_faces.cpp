@@ -168,7 +168,7 @@ void SortedFaces::upload_vertices() const
 
 /// Outside of the grid's sphere there is nothing near the eye. Inside, the near plane must be
 /// nearer than any face: rays that lose one do not know any more whether they are in the grid.
-void SortedFaces::look_about(const OrbitCamera &camera, Size size)
+void SortedFaces::fit_near_plane(const OrbitCamera &camera, Size size)
 {
     camera_ = camera;
     nearest_depth_ = 0.0F;
@@ -191,11 +191,11 @@ void SortedFaces::look_about(const OrbitCamera &camera, Size size)
         return;
     eye_is_inside_ = true;
     nearest_depth_ = 0.8F * free;
-    enter_at_eye(0.6F * free, slopes, *place.scalar);
+    cap_at_eye(0.6F * free, slopes, *place.scalar);
 }
 
-/// One triangle over all of the picture.
-void SortedFaces::enter_at_eye(float depth, glm::vec2 slopes, float scalar)
+/// Closes the grid before an eye inside of it, by one triangle over all of the picture.
+void SortedFaces::cap_at_eye(float depth, glm::vec2 slopes, float scalar)
 {
     const glm::mat4 to_scene = glm::inverse(camera_.view());
     auto vertex = vertices_.end() - 3;
@@ -266,7 +266,7 @@ void SortedFaces::choose(Chosen &chosen, glm::vec3 eye, Size size)
 
 void SortedFaces::sort(const OrbitCamera &camera, Size size)
 {
-    look_about(camera, size);
+    fit_near_plane(camera, size);
     project(camera, size);
     const glm::vec3 eye(glm::inverse(camera.view())[3]);
     std::vector<std::future<void>> work;

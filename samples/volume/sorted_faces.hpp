@@ -76,8 +76,8 @@ private:
     void project(const OrbitCamera &camera, Size size);
     Seen see(const glm::uvec3 &triangle, glm::vec3 eye, Size size) const;
     void choose(Chosen &chosen, glm::vec3 eye, Size size);
-    void look_about(const OrbitCamera &camera, Size size);
-    void enter_at_eye(float depth, glm::vec2 slopes, float scalar);
+    void fit_near_plane(const OrbitCamera &camera, Size size);
+    void cap_at_eye(float depth, glm::vec2 slopes, float scalar);
     void upload_vertices() const;
     float key_of(const glm::uvec3 &triangle) const;
 

@@ -113,7 +113,7 @@ int main(int argc, char **argv)
         const std::string text = document.dump(1) + "\n";
         bench::must(write_file(options.out, std::as_bytes(std::span(text))));
     } catch (const std::exception &error) {
-        return fail(app, {error.what()}, exit_lacking);
+        return fail(app, {error.what()}, exit_unsupported);
     }
     return 0;
 }

@@ -204,10 +204,10 @@ int run_test(const CLI::App &app, const Options &options, Fault fault, Progress 
     setenv("GALLIUM_DRIVER", options.driver.c_str(), 1);
     auto context = kb::make_context("osmesa");
     if (!context)
-        return kb::fail(app, context.error(), kb::exit_lacking);
+        return kb::fail(app, context.error(), kb::exit_unsupported);
     auto status = Test(options, fault, (*context)->gl(), progress).run();
     std::fflush(stdout);
-    return status ? *status : kb::fail(app, status.error(), kb::exit_lacking);
+    return status ? *status : kb::fail(app, status.error(), kb::exit_unsupported);
 }
 
 /// The test in a process of its own, so that a crash of the driver leaves the scene's seed.
@@ -216,12 +216,12 @@ int run_guarded(const CLI::App &app, const Options &options, Fault fault)
     void *shared =
         mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (shared == MAP_FAILED)
-        return kb::fail(app, {"no shared memory"}, kb::exit_lacking);
+        return kb::fail(app, {"no shared memory"}, kb::exit_unsupported);
     auto &progress = *new (shared) Progress;
     std::fflush(stdout);
     const pid_t child = fork();
     if (child < 0)
-        return kb::fail(app, {"no process can be started"}, kb::exit_lacking);
+        return kb::fail(app, {"no process can be started"}, kb::exit_unsupported);
     if (child == 0)
         std::exit(run_test(app, options, fault, progress));
     int status = 0;

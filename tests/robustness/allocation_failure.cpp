@@ -289,13 +289,13 @@ int main(int argc, char **argv)
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     const auto library = kb::SharedLibrary::open("libOSMesa.so.8");
     if (!library)
-        return kb::fail(app, library.error(), kb::exit_lacking);
+        return kb::fail(app, library.error(), kb::exit_unsupported);
     const std::vector<std::string> files = find_sources(sources);
     if (auto watched = watch_allocations("libOSMesa.so", files, helpers); !watched)
-        return kb::fail(app, watched.error(), kb::exit_lacking);
+        return kb::fail(app, watched.error(), kb::exit_unsupported);
     Runner runner;
     if (!runner.ready())
-        return kb::fail(app, {"no memory is left"}, kb::exit_lacking);
+        return kb::fail(app, {"no memory is left"}, kb::exit_unsupported);
 
     for (const Configuration &configuration :
          {Configuration{"llvmpipe", "0"}, {"llvmpipe", "2"}, {"softpipe", "0"}})

@@ -70,7 +70,7 @@ int finish(const CLI::App &app)
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return 0;
     return fail(app, Error{"cannot write all that was to be printed to the standard output"},
-                exit_lacking);
+                exit_unsupported);
 }
 
 std::string check_number(const std::string &text, double low, double high)

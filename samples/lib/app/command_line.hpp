@@ -27,7 +27,7 @@ class Validator;
 namespace kb
 {
 
-inline constexpr int exit_lacking = 1;
+inline constexpr int exit_unsupported = 1;
 inline constexpr int exit_bad_input = 2;
 inline constexpr int exit_interrupted = 130; ///< By Ctrl-C, as shells say it.
 
